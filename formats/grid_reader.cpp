@@ -6,11 +6,13 @@
 #include <array>
 #include <span>
 
+#include "core/lower_case.h"
 #include "formats/atomic_file.h"
 #include "formats/grid_file.h"
 #include "formats/ply_header.h"
 #include "formats/ply_scan.h"
 #include "formats/scan_samples.h"
+#include "formats/text_scanner.h"
 #include "formats/text_scans.h"
 
 namespace dubsar {
@@ -22,17 +24,9 @@ enum class ScanFormat { kPly, kGrid, kPtx, kPointText, kUnknown };
 /// Enough for any header that anyone writes.
 constexpr std::size_t kHeadBytes = std::size_t{64} << 10U;
 
-std::string lower_extension(const std::filesystem::path& name) {
-  std::string extension = name.extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(), [](unsigned char c) {
-    return static_cast<char>(c >= 'A' && c <= 'Z' ? c + ('a' - 'A') : c);
-  });
-  return extension;
-}
-
 /// What the bytes say, then what the name says.
 ScanFormat format_of(std::string_view bytes, const std::filesystem::path& name) {
-  const std::string extension = lower_extension(name);
+  const std::string extension = in_lower_case(name.extension().string());
   if (extension == ".conf") {
     return ScanFormat::kUnknown;
   }
@@ -59,6 +53,35 @@ ScanFormat format_of(std::string_view bytes, const std::filesystem::path& name) 
   return ScanFormat::kUnknown;
 }
 
+bool is_txt(const std::filesystem::path& name) {
+  return in_lower_case(name.extension().string()) == ".txt";
+}
+
+/// A .txt may be anything; what has an ending of points is damaged where it holds none, unless it is a
+/// signature.
+FileKind kind_of_text(std::string_view head, bool whole, const std::filesystem::path& name) {
+  const bool txt = is_txt(name);
+  if (TextScanner(head).at_end()) {
+    return txt ? FileKind::kDoubtful : FileKind::kScan;
+  }
+  if (head.starts_with("-----BEGIN PGP")) {
+    return FileKind::kOther;
+  }
+  const std::size_t points = count_point_lines(head);
+  if (points >= kLeastPointLines || (!txt && (points == 0 || !whole))) {
+    return FileKind::kScan;
+  }
+  return points > 0 ? FileKind::kFewPoints : FileKind::kOther;
+}
+
+/// What only the name tells of.
+FileKind kind_of_unread(const std::filesystem::path& name) {
+  const ScanFormat format = format_of({}, name);
+  return format == ScanFormat::kUnknown ? FileKind::kOther
+         : is_txt(name)                 ? FileKind::kDoubtful
+                                        : FileKind::kScan;
+}
+
 std::vector<ScanData> one(ScanData scan) {
   std::vector<ScanData> scans;
   scans.push_back(std::move(scan));
@@ -69,6 +92,7 @@ std::vector<ScanData> one(ScanData scan) {
 
 Result<std::vector<ScanData>> read_scan_bytes(std::string_view bytes, const std::string& name,
                                               const GridReadOptions& options) {
+  bytes = without_byte_order_mark(bytes);
   Result<ScanData> scan;
   switch (format_of(bytes, name)) {
     case ScanFormat::kPly:
@@ -103,31 +127,49 @@ Result<std::vector<ScanData>> read_scan_file(const std::filesystem::path& path,
                                              const GridReadOptions& options) {
   const Result<std::string> bytes = read_whole_file(path);
   if (!bytes) {
-    return std::unexpected(bytes.error());
+    std::error_code ignored;
+    return std::filesystem::is_symlink(path, ignored) && !std::filesystem::exists(path, ignored)
+               ? bad_input(path.string(), "a link to a file that is not there", "copy the file itself here")
+               : std::unexpected(bytes.error());
   }
   return read_scan_bytes(*bytes, path.string(), options);
 }
 
-bool looks_like_scan(const std::filesystem::path& path) {
-  const Result<std::string> head = read_file_head(path, kHeadBytes);
-  if (!head) {
-    return false;
-  }
-  switch (format_of(*head, path)) {
+FileKind kind_of_head(std::string_view head, bool whole, const std::filesystem::path& name) {
+  head = without_byte_order_mark(head);
+  switch (format_of(head, name)) {
     case ScanFormat::kPly: {
-      const Result<PlyHeader> header = parse_ply_header(*head, path.string());
-      // A PLY that cannot be made out is a scan that was damaged: leaving it out would hide that.
-      return !header || is_scan_header(*header);
+      const Result<PlyHeader> header = parse_ply_header(head, name.string());
+      // A PLY that cannot be made out is a scan that was damaged.
+      return !header || is_scan_header(*header) ? FileKind::kScan : FileKind::kOther;
     }
     case ScanFormat::kGrid:
-      return is_grid_file(*head);
     case ScanFormat::kPtx:
+      return FileKind::kScan;
     case ScanFormat::kPointText:
-      return is_point_text(*head);
+      return kind_of_text(head, whole, name);
     case ScanFormat::kUnknown:
       break;
   }
-  return false;
+  return FileKind::kOther;
+}
+
+FileKind kind_of_file(const std::filesystem::path& path) {
+  std::error_code unreadable;
+  const std::filesystem::file_type type = std::filesystem::status(path, unreadable).type();
+  const bool missing = type == std::filesystem::file_type::not_found;
+  if (missing && !std::filesystem::is_symlink(path, unreadable)) {
+    return FileKind::kOther;
+  }
+  if (!missing && type != std::filesystem::file_type::none && type != std::filesystem::file_type::regular) {
+    return FileKind::kOther;
+  }
+  const Result<std::string> head = read_file_head(path, kHeadBytes);
+  return head ? kind_of_head(*head, head->size() < kHeadBytes, path) : kind_of_unread(path);
+}
+
+bool looks_like_scan(const std::filesystem::path& path) {
+  return kind_of_file(path) == FileKind::kScan;
 }
 
 Result<int> count_scans(const std::filesystem::path& path) {
@@ -135,11 +177,12 @@ Result<int> count_scans(const std::filesystem::path& path) {
   if (!head) {
     return std::unexpected(head.error());
   }
-  if (format_of(*head, path) == ScanFormat::kPtx) {
+  if (format_of(without_byte_order_mark(*head), path) == ScanFormat::kPtx) {
     const Result<std::string> bytes = read_whole_file(path);
-    return bytes ? count_ptx_scans(*bytes, path.string()) : std::unexpected(bytes.error());
+    return bytes ? count_ptx_scans(without_byte_order_mark(*bytes), path.string())
+                 : std::unexpected(bytes.error());
   }
-  if (!looks_like_scan(path)) {
+  if (const FileKind kind = kind_of_file(path); kind == FileKind::kOther || kind == FileKind::kDoubtful) {
     return bad_input(path.string(), "not a scan that Dubsar reads",
                      "give range-grid PLY, PTX, point text or .grid");
   }

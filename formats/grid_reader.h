@@ -40,11 +40,26 @@ inline constexpr double kMaxCoordinateMm = 1e6;
 [[nodiscard]] Result<std::vector<ScanData>> read_scan_bytes(std::string_view bytes, const std::string& name,
                                                             const GridReadOptions& options = {});
 
-/// True when the beginning of the file is that of a scan, or of a PLY that cannot be made out; loads no more
-/// than the header. Meshes (a PLY with faces), .conf files and unreadable files are not.
+/// What a file in a folder of scans is taken for.
+enum class FileKind {
+  kScan,       ///< a scan, also one that is damaged or cannot be read: leaving it out would hide that
+  kOther,      ///< evidently none: another ending, .conf, a mesh, prose in a .txt
+  kFewPoints,  ///< text with numbers, but too few for a scan: a pose, a calibration
+  kDoubtful,   ///< a .txt that is empty or cannot be read: a scan where other .txt are such
+};
+
+/// Point text with fewer lines of points is no scan when nobody names it.
+inline constexpr std::size_t kLeastPointLines = 100;
+
+/// Loads no more than the header, or the first lines. Folders and what is no file are kOther.
+[[nodiscard]] FileKind kind_of_file(const std::filesystem::path& path);
+/// The same from the beginning of a file; `whole` when it holds no more.
+[[nodiscard]] FileKind kind_of_head(std::string_view head, bool whole, const std::filesystem::path& name);
+
+/// True when the file is of kScan.
 [[nodiscard]] bool looks_like_scan(const std::filesystem::path& path);
 
-/// How many scans the file holds, without keeping any sample. 1 but for PTX.
+/// How many scans the file holds, those of no samples aside, without keeping any sample. 1 but for PTX.
 [[nodiscard]] Result<int> count_scans(const std::filesystem::path& path);
 
 }  // namespace dubsar

@@ -17,6 +17,7 @@
 #include "formats/scan_samples.h"
 #include "formats/seen_side.h"
 #include "formats/text_scanner.h"
+#include "formats/unit_name.h"
 
 namespace dubsar {
 
@@ -259,7 +260,7 @@ Result<double> mm_per_unit_of(const PlyHeader& header, const std::string& name) 
   }
   std::string_view rest = *value;
   const std::string_view word = take_word(rest);
-  if (const std::optional<double> mm = mm_per_unit(word)) {
+  if (const std::optional<double> mm = mm_per_unit_as_written(word)) {
     return *mm;
   }
   return bad_input(name, "obj_info unit is " + in_quotes(word) + ", not " + std::string(kLengthUnitsText),

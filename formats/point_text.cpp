@@ -5,6 +5,7 @@
 #include <cmath>
 #include <optional>
 
+#include "formats/comma_use.h"
 #include "formats/scan_samples.h"
 #include "formats/text_scanner.h"
 #include "formats/text_scans.h"
@@ -25,24 +26,30 @@ struct Line {
 };
 
 bool is_separator(char c) {
-  return c == ' ' || c == ',' || c == ';' || (c >= '\t' && c <= '\r');
+  return c == ' ' || c == ';' || (c >= '\t' && c <= '\r');
 }
 
-Line read_line(std::string_view text) {
+bool is_separator_or_comma(char c) {
+  return is_separator(c) || c == ',';
+}
+
+Line read_line(std::string_view text, bool decimal_commas) {
   Line line;
+  const auto ends_word = decimal_commas ? is_separator : is_separator_or_comma;
+  const auto parse = decimal_commas ? parse_number_or_comma : parse_number;
   auto at = text.begin();
   while (line.count < kMaxColumns) {
-    at = std::find_if_not(at, text.end(), is_separator);
+    at = std::find_if_not(at, text.end(), ends_word);
     if (at == text.end()) {
       break;
     }
-    const auto stop = std::find_if(at, text.end(), is_separator);
+    const auto stop = std::find_if(at, text.end(), ends_word);
     const std::string_view word(at, stop);
     if (word.starts_with('#') || word.starts_with("//")) {
       break;
     }
     line.blank = false;
-    if (!parse_number(word, line.values[line.count])) {
+    if (!parse(word, line.values[line.count])) {
       line.stray = word.substr(0, 24);
       break;
     }
@@ -76,14 +83,14 @@ Triple judge(const std::vector<float>& triples) {
 
 }  // namespace
 
-bool is_point_text(std::string_view head) {
-  TextScanner text(head);
-  for (std::size_t i = 0; i < kMaxLeadingLines && text.remaining() > 0; ++i) {
-    if (const Line line = read_line(text.line()); line.count >= 3 && line.stray.empty()) {
-      return true;
-    }
+std::size_t count_point_lines(std::string_view head) {
+  std::size_t count = 0;
+  for (TextScanner text(head); text.remaining() > 0;) {
+    // Whatever its commas are: with decimal ones it has three words or more.
+    const Line line = read_line(text.line(), false);
+    count += line.count >= 3 && line.stray.empty() ? 1 : 0;
   }
-  return false;
+  return count;
 }
 
 Result<ScanData> read_point_text(std::string_view bytes, const std::string& name,
@@ -96,8 +103,18 @@ Result<ScanData> read_point_text(std::string_view bytes, const std::string& name
   ScanSamples samples;
   std::vector<float> triples;
   std::size_t columns = 0;
+  CommaReading commas;
   for (std::size_t number = 1; text.remaining() > 0; ++number) {
-    const Line line = read_line(text.line());
+    const std::string_view whole = text.line();
+    bool decimal_commas = false;
+    if (whole.contains(',')) {
+      const Result<bool> told = commas.decimal(whole, bytes.substr(text.position()), number, name);
+      if (!told) {
+        return std::unexpected(told.error());
+      }
+      decimal_commas = *told;
+    }
+    const Line line = read_line(whole, decimal_commas);
     if (line.blank) {
       continue;
     }

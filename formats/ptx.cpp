@@ -5,6 +5,7 @@
 #include <array>
 
 #include "formats/place_precision.h"
+#include "formats/ptx_samples.h"
 #include "formats/scan_samples.h"
 #include "formats/seen_side.h"
 #include "formats/text_scanner.h"
@@ -14,7 +15,6 @@ namespace dubsar {
 
 namespace {
 
-constexpr const char* kExportAgain = "the file is cut short or not PTX: copy or export it again";
 constexpr std::int64_t kMaxSide = std::int64_t{1} << 24U;
 constexpr int kHeaderNumbers = 3 + 9 + 16;
 /// A line of a sample is at least "0 0 0".
@@ -23,24 +23,69 @@ constexpr std::size_t kLeastSampleBytes = 6;
 constexpr std::size_t kLeastSamples = 1000;
 
 struct PtxHeader {
-  int profiles = 0;
-  int samples = 0;  ///< of a profile
+  int profiles = 0;  ///< both are 0 for a scan of no samples
+  int samples = 0;   ///< of a profile
 };
 
-std::unexpected<Error> ptx_error(const TextScanner& text, const std::string& name, const std::string& what) {
-  return bad_input(name, "line " + std::to_string(text.line_number()) + ": " + what, kExportAgain);
+struct PtxText {
+  TextScanner text;
+  char line_end;
+
+  // Lines of an old Macintosh end with a carriage return alone.
+  explicit PtxText(std::string_view bytes)
+      : text(bytes), line_end(bytes.contains('\n') || !bytes.contains('\r') ? '\n' : '\r') {}
+};
+
+bool is_digit(char c) {
+  return c >= '0' && c <= '9';
 }
 
-Result<PtxHeader> read_header(TextScanner& text, const std::string& name) {
+/// Nothing in PTX has a comma but a number that was written in a country of decimal commas. kBadInput where a
+/// file has points as well, or commas beside something else than digits.
+Result<std::string> with_decimal_points(std::string_view bytes, const std::string& name) {
+  const bool has_points = bytes.contains('.');
+  std::string out(bytes);
+  for (std::size_t at = bytes.find(','); at != std::string_view::npos; at = bytes.find(',', at + 1)) {
+    const bool in_number =
+        at > 0 && at + 1 < bytes.size() && is_digit(bytes[at - 1]) && is_digit(bytes[at + 1]);
+    if (!in_number || has_points) {
+      TextScanner text(bytes);
+      text.seek(at);
+      return bad_input(
+          name,
+          "line " + std::to_string(text.line_number()) +
+              (in_number ? ": its numbers have commas, and decimal points stand in the file as well"
+                         : ": a comma stands where none belongs in PTX"),
+          "export it again with decimal points");
+    }
+    out[at] = '.';
+  }
+  return out;
+}
+
+/// What `read` makes of the bytes, or of the same with decimal points where their commas stopped it.
+template <class Read>
+auto read_either_way(std::string_view bytes, const std::string& name, const Read& read)
+    -> decltype(read(bytes)) {
+  auto result = read(bytes);
+  if (result || !bytes.contains(',')) {
+    return result;
+  }
+  const Result<std::string> with_points = with_decimal_points(bytes, name);
+  return with_points ? read(*with_points) : std::unexpected(with_points.error());
+}
+
+Result<PtxHeader> read_header(PtxText& file, const std::string& name) {
+  TextScanner& text = file.text;
   std::array<std::int64_t, 2> sides{};
   for (std::int64_t& side : sides) {
     const std::string word = text.word_here();
     const std::size_t line = text.line_number();
-    if (!text.integer(side) || side < 1 || side > kMaxSide) {
+    if (!text.integer(side) || side < 0 || side > kMaxSide) {
       return bad_input(name,
                        "line " + std::to_string(line) + ": " + in_quotes(word) +
                            " stands where a count from 1 to " + std::to_string(kMaxSide) + " belongs",
-                       kExportAgain);
+                       kNoPtxMend);
     }
   }
   for (int i = 0; i < kHeaderNumbers; ++i) {
@@ -49,8 +94,11 @@ Result<PtxHeader> read_header(TextScanner& text, const std::string& name) {
       return ptx_error(text, name, in_quotes(text.word_here()) + " stands where the scanner's pose belongs");
     }
   }
-  (void)text.line();
+  (void)text.line(file.line_end);
   const auto cells = static_cast<std::uint64_t>(sides[0]) * static_cast<std::uint64_t>(sides[1]);
+  if (cells == 0) {
+    return PtxHeader{};
+  }
   if (cells > (text.remaining() + 1) / kLeastSampleBytes) {
     return ptx_error(text, name,
                      "claims " + std::to_string(sides[0]) + " x " + std::to_string(sides[1]) +
@@ -58,15 +106,6 @@ Result<PtxHeader> read_header(TextScanner& text, const std::string& name) {
                          " bytes are left for them");
   }
   return PtxHeader{static_cast<int>(sides[0]), static_cast<int>(sides[1])};
-}
-
-/// How many numbers the next line has, up to 8.
-int columns_of_next_line(TextScanner text) {
-  std::string_view line = text.line();
-  int columns = 0;
-  for (double ignored = 0; columns < 8 && parse_number(take_word(line), ignored); ++columns) {
-  }
-  return columns;
 }
 
 /// No scanner of objects sees a tenth of its samples so far off the middle of its view: what has its origin
@@ -116,41 +155,25 @@ Result<std::string> place_scanner(RangeGrid& grid, const std::string& name) {
   return std::string();
 }
 
-Result<RangeGrid> read_one(TextScanner& text, const std::string& name, double mm, std::string& remark) {
-  const Result<PtxHeader> header = read_header(text, name);
+/// The next scan; one without a cell where the file has one of no samples.
+Result<RangeGrid> read_one(PtxText& file, const std::string& name, double mm, std::string& remark) {
+  const Result<PtxHeader> header = read_header(file, name);
   if (!header) {
     return std::unexpected(header.error());
   }
-  const int columns = columns_of_next_line(text);
-  if (columns != 3 && columns != 4 && columns != 7) {
-    return ptx_error(text, name, "a sample has " + std::to_string(columns) + " numbers, not 3, 4 or 7");
+  if (header->profiles == 0) {
+    return RangeGrid{};
   }
   const std::size_t cells =
       static_cast<std::size_t>(header->profiles) * static_cast<std::size_t>(header->samples);
-  ScanSamples samples;
-  for (std::size_t i = 0; i < cells; ++i) {
-    std::array<double, 7> v{};
-    for (int k = 0; k < columns; ++k) {
-      if (!text.number(v[static_cast<std::size_t>(k)])) {
-        return ptx_error(
-            text, name,
-            text.at_end()
-                ? "ends at sample " + std::to_string(i) + " of " + std::to_string(cells)
-                : "sample " + std::to_string(i) + ": " + in_quotes(text.word_here()) + " is not a number");
-      }
-    }
-    samples.add(mm * v[0], mm * v[1], mm * v[2], v[0] != 0 || v[1] != 0 || v[2] != 0);
-    if (columns > 3) {
-      samples.intensity.push_back(static_cast<float>(v[3]));
-    }
-    for (std::size_t k = 4; columns == 7 && k < 7; ++k) {
-      samples.rgb.push_back(v[k] > 0 ? static_cast<std::uint8_t>(std::min(v[k], 255.0)) : std::uint8_t{0});
-    }
+  const Result<ScanSamples> samples = read_ptx_samples(file.text, file.line_end, cells, mm, name);
+  if (!samples) {
+    return std::unexpected(samples.error());
   }
-  if (const Status near = samples.check_place(name); !near) {
+  if (const Status near = samples->check_place(name); !near) {
     return std::unexpected(near.error());
   }
-  RangeGrid grid = grid_from_samples(samples, header->profiles, header->samples, {});
+  RangeGrid grid = grid_from_samples(*samples, header->profiles, header->samples, {});
   const Result<std::string> doubt = place_scanner(grid, name);
   if (!doubt) {
     return std::unexpected(doubt.error());
@@ -163,16 +186,14 @@ Result<RangeGrid> read_one(TextScanner& text, const std::string& name, double mm
   return grid;
 }
 
-}  // namespace
-
-Result<std::vector<ScanData>> read_ptx(std::string_view bytes, const std::string& name,
+Result<std::vector<ScanData>> read_all(std::string_view bytes, const std::string& name,
                                        const GridReadOptions& options) {
-  TextScanner text(bytes);
+  PtxText file(bytes);
   std::vector<RangeGrid> grids;
   std::vector<std::string> remarks;
   bool any_sample = false;
-  while (!text.at_end() || grids.empty()) {
-    Result<RangeGrid> grid = read_one(text, name, options.mm_per_unit.value_or(1.0), remarks.emplace_back());
+  while (!file.text.at_end() || grids.empty()) {
+    Result<RangeGrid> grid = read_one(file, name, options.mm_per_unit.value_or(1.0), remarks.emplace_back());
     if (!grid) {
       return std::unexpected(grid.error());
     }
@@ -183,39 +204,65 @@ Result<std::vector<ScanData>> read_ptx(std::string_view bytes, const std::string
     return bad_input(name, "holds no usable sample", "export the scan again");
   }
   std::vector<ScanData> scans;
+  std::vector<std::string> empty;
   for (std::size_t i = 0; i < grids.size(); ++i) {
     grids[i].source = file_name_of(name);
     if (grids.size() > 1) {
       grids[i].source += '#';
       grids[i].source += std::to_string(i);
     }
+    if (grids[i].size() == 0) {
+      empty.push_back(grids[i].source);
+      continue;
+    }
     if (!remarks[i].empty() && options.remark) {
       options.remark(grids[i].source, remarks[i]);
     }
     scans.emplace_back(std::move(grids[i]));
   }
+  for (const std::string& scan : empty) {
+    if (options.remark) {
+      options.remark(std::get<RangeGrid>(scans.front()).source,
+                     scan + " beside it has no samples and is passed over");
+    }
+  }
   return scans;
 }
 
-Result<int> count_ptx_scans(std::string_view bytes, const std::string& name) {
-  TextScanner text(bytes);
+Result<int> count_all(std::string_view bytes, const std::string& name) {
+  PtxText file(bytes);
   int count = 0;
-  while (!text.at_end() || count == 0) {
-    const Result<PtxHeader> header = read_header(text, name);
+  do {
+    const Result<PtxHeader> header = read_header(file, name);
     if (!header) {
       return std::unexpected(header.error());
     }
     const std::size_t cells =
         static_cast<std::size_t>(header->profiles) * static_cast<std::size_t>(header->samples);
     for (std::size_t i = 0; i < cells; ++i) {
-      text.skip_blanks();
-      if (text.line().empty()) {
-        return ptx_error(text, name, "ends at sample " + std::to_string(i) + " of " + std::to_string(cells));
+      file.text.skip_blanks();
+      if (file.text.line(file.line_end).empty()) {
+        return ptx_error(file.text, name,
+                         "ends at sample " + std::to_string(i) + " of " + std::to_string(cells));
       }
     }
-    ++count;
-  }
+    count += cells > 0 ? 1 : 0;
+  } while (!file.text.at_end());
   return count;
+}
+
+}  // namespace
+
+Result<std::vector<ScanData>> read_ptx(std::string_view bytes, const std::string& name,
+                                       const GridReadOptions& options) {
+  if (bytes.empty()) {
+    return bad_input(name, "the file is empty", "copy or export it again");
+  }
+  return read_either_way(bytes, name, [&](std::string_view text) { return read_all(text, name, options); });
+}
+
+Result<int> count_ptx_scans(std::string_view bytes, const std::string& name) {
+  return read_either_way(bytes, name, [&](std::string_view text) { return count_all(text, name); });
 }
 
 }  // namespace dubsar

@@ -3,8 +3,12 @@
 #include "formats/text_scanner.h"
 
 #include <algorithm>
+#include <array>
 #include <clocale>
+#include <cmath>
 #include <cstdlib>
+#include <cstring>
+#include <limits>
 
 namespace dubsar {
 
@@ -24,6 +28,20 @@ double strtod_with_point(const char* text) {
   return strtod_l(text, nullptr, kWithPoint);
 }
 
+/// What Microsoft's printf long wrote for what is no number: 1.#QNAN, -1.#IND, 1.#INF, filled up with zeros.
+/// `stop` is at the #; null where none of these stands.
+const char* end_of_no_number(const char* at, const char* stop, const char* end, double& value) {
+  const std::string_view rest(stop, static_cast<std::size_t>(end - stop));
+  for (const std::string_view name : {"#INF", "#IND", "#QNAN", "#SNAN"}) {
+    if (stop[-1] == '.' && rest.starts_with(name)) {
+      value = name != "#INF" ? std::numeric_limits<double>::quiet_NaN()
+                             : std::copysign(std::numeric_limits<double>::infinity(), *at == '-' ? -1 : 1);
+      return std::find_if_not(stop + name.size(), end, [](char c) { return c >= '0' && c <= '9'; });
+    }
+  }
+  return nullptr;
+}
+
 /// from_chars, and zero or infinity where that gives up on the magnitude. Null when there is no number.
 const char* number_at(const char* at, const char* end, double& value) {
   if (at != end && *at == '+' && at + 1 != end && at[1] != '-') {
@@ -35,7 +53,10 @@ const char* number_at(const char* at, const char* end, double& value) {
     value = strtod_with_point(copy.c_str());
     return stop;
   }
-  return error == std::errc{} ? stop : nullptr;
+  if (error != std::errc{}) {
+    return nullptr;
+  }
+  return stop != end && *stop == '#' ? end_of_no_number(at, stop, end, value) : stop;
 }
 
 }  // namespace
@@ -72,7 +93,8 @@ bool TextScanner::integer(std::int64_t& value) {
 
 std::string_view TextScanner::line(char end) {
   const char* from = at_;
-  at_ = std::find(at_, end_, end);
+  const void* found = at_ == end_ ? nullptr : std::memchr(at_, end, remaining());
+  at_ = found == nullptr ? end_ : static_cast<const char*>(found);
   std::string_view text(from, static_cast<std::size_t>(at_ - from));
   if (at_ != end_) {
     ++at_;
@@ -114,6 +136,15 @@ std::string_view take_word(std::string_view& line) {
 bool parse_number(std::string_view word, double& value) {
   return !word.empty() &&
          number_at(word.data(), word.data() + word.size(), value) == word.data() + word.size();
+}
+
+bool parse_number_or_comma(std::string_view word, double& value) {
+  if (!word.contains(',') || word.contains('.') || word.size() > kMaxNumberChars) {
+    return parse_number(word, value);
+  }
+  std::array<char, kMaxNumberChars> with_point{};
+  std::replace_copy(word.begin(), word.end(), with_point.begin(), ',', '.');
+  return parse_number({with_point.data(), word.size()}, value);
 }
 
 bool parse_integer(std::string_view word, std::int64_t& value) {

@@ -18,7 +18,8 @@ class TextScanner {
       : begin_(text.data()), at_(begin_), end_(begin_ + text.size()) {}
 
   /// The next number; false at the end or where no number stands (then the position is at that word). Words
-  /// such as nan and inf are numbers; one that no double can hold becomes zero or infinity.
+  /// such as nan, nan(ind), 1.#QNAN and inf are numbers; one that no double can hold becomes zero or
+  /// infinity.
   [[nodiscard]] bool number(double& value);
   [[nodiscard]] bool integer(std::int64_t& value);
 
@@ -64,6 +65,8 @@ class TextScanner {
 
 /// The whole word as a number; false when it is anything else.
 [[nodiscard]] bool parse_number(std::string_view word, double& value);
+/// The same, or with a comma in the place of the decimal point.
+[[nodiscard]] bool parse_number_or_comma(std::string_view word, double& value);
 [[nodiscard]] bool parse_integer(std::string_view word, std::int64_t& value);
 
 }  // namespace dubsar

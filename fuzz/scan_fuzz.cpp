@@ -5,8 +5,11 @@
 #include "fuzz/fuzz_support.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  const auto scans = dubsar::read_scan_bytes(dubsar::fuzz::text_of(data, size), FUZZED_FILE_NAME);
+  const std::string_view bytes = dubsar::fuzz::text_of(data, size);
+  const auto scans = dubsar::read_scan_bytes(bytes, FUZZED_FILE_NAME);
   if (scans) {
+    // What is read is not left out of a folder unseen.
+    dubsar::fuzz::require(dubsar::kind_of_head(bytes, true, FUZZED_FILE_NAME) != dubsar::FileKind::kOther);
     for (const dubsar::ScanData& scan : *scans) {
       if (const auto* grid = std::get_if<dubsar::RangeGrid>(&scan)) {
         dubsar::fuzz::check_grid(*grid);

@@ -12,6 +12,7 @@
 #include "formats/grid_file.h"
 #include "formats/grid_ply.h"
 #include "formats/grid_reader.h"
+#include "formats/scan_folder.h"
 #include "python/file_text.h"
 #include "python/jobs.h"
 
@@ -79,19 +80,19 @@ GridPointer make_grid(const Input<float>& x, const Input<float>& y, const Input<
   return grid;
 }
 
-std::vector<fs::path> scan_files(const fs::path& path) {
+Result<std::vector<fs::path>> scan_files(const fs::path& path, std::vector<std::string>& remarks) {
   std::error_code ignored;
   if (!fs::is_directory(path, ignored)) {
-    return {path};
+    return std::vector{path};
   }
-  std::vector<fs::path> files;
-  for (fs::directory_iterator it(path, ignored), end; !ignored && it != end; it.increment(ignored)) {
-    if (looks_like_scan(it->path())) {
-      files.push_back(it->path());
-    }
+  Result<ScanFolder> folder = look_into_folder(path);
+  if (!folder) {
+    return std::unexpected(folder.error());
   }
-  std::ranges::sort(files);
-  return files;
+  if (const std::string passed_over = folder->passed_over(); !passed_over.empty()) {
+    remarks.push_back(one_line(path.string() + ": " + passed_over));
+  }
+  return std::move(folder->scans);
 }
 
 /// `remarks` takes what the readers remark on the scans, one line each.
@@ -102,13 +103,16 @@ Result<std::vector<GridPointer>> read_grids(const fs::path& path, std::optional<
     remarks.push_back(one_line(scan + ": " + remark));
   };
   std::vector<GridPointer> out;
-  const std::vector<fs::path> files = scan_files(path);
-  for (std::size_t k = 0; k < files.size(); ++k) {
-    job.progress("reading", static_cast<double>(k) / static_cast<double>(files.size()));
+  const Result<std::vector<fs::path>> files = scan_files(path, remarks);
+  if (!files) {
+    return std::unexpected(files.error());
+  }
+  for (std::size_t k = 0; k < files->size(); ++k) {
+    job.progress("reading", static_cast<double>(k) / static_cast<double>(files->size()));
     if (job.cancelled()) {
       return fail(ErrorKind::kCancelled, "stopped");
     }
-    Result<std::vector<ScanData>> scans = read_scan_file(files[k], options);
+    Result<std::vector<ScanData>> scans = read_scan_file((*files)[k], options);
     if (!scans) {
       return std::unexpected(scans.error());
     }

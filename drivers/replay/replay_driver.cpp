@@ -190,6 +190,9 @@ std::int32_t open(const char* locator, const dubsar_option* options, std::uint32
     if (!files) {
       return plugin::report(error, files.error());
     }
+    if (!files->passed_over().empty()) {
+      log_info(std::string(locator) + ": " + files->passed_over());
+    }
     *device = new dubsar_device{std::move(*files), rate};
     return DUBSAR_OK;
   });

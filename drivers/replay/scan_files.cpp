@@ -5,57 +5,47 @@
 #include <algorithm>
 #include <utility>
 
+#include "formats/scan_folder.h"
+
 namespace dubsar::replay {
 
 namespace fs = std::filesystem;
 
 namespace {
 
-struct FolderContent {
-  std::vector<fs::path> scans;
-  std::size_t other_files = 0;
-  std::vector<fs::path> subfolders;
-};
-
-FolderContent content_of(const fs::path& folder, std::error_code& error) {
-  FolderContent content;
-  fs::directory_iterator it(folder, error);
-  for (const fs::directory_iterator end; !error && it != end; it.increment(error)) {
-    std::error_code ignored;
-    if (it->path().filename().string().starts_with('.')) {
-      continue;
-    }
-    if (it->is_directory(ignored)) {
-      content.subfolders.push_back(it->path());
-    } else if (it->is_regular_file(ignored)) {
-      if (looks_like_scan(it->path())) {
-        content.scans.push_back(it->path());
-      } else {
-        ++content.other_files;
-      }
-    }
+/// What helps where files lie that are not read as they are.
+std::string mend_of(const ScanFolder& content) {
+  std::string mend;
+  if (content.packed) {
+    mend = "unpack the packed files";
   }
-  return content;
+  if (content.tables) {
+    mend.append(mend.empty() ? "" : ", ").append("rename .csv to .xyz where the lines are points");
+  }
+  if (!content.few_points.empty()) {
+    mend.append(mend.empty() ? "" : ", ")
+        .append("name a file by itself if it is a scan of fewer than 100 points");
+  }
+  return mend.empty() ? "name a folder with range grids (PLY, PTX or point files)" : mend;
 }
 
 /// Says what is there instead, so that whoever named the folder above the scans sees which to name.
-std::unexpected<Error> without_scans(const fs::path& folder, const FolderContent& content) {
+std::unexpected<Error> without_scans(const fs::path& folder, const ScanFolder& content) {
   constexpr std::size_t kMostNamed = 5;
   std::vector<std::string> with_scans;
   for (const fs::path& subfolder : content.subfolders) {
-    std::error_code unreadable;
-    if (!content_of(subfolder, unreadable).scans.empty()) {
+    if (const Result<ScanFolder> below = look_into_folder(subfolder); below && !below->scans.empty()) {
       with_scans.push_back(subfolder.filename().string());
     }
   }
-  std::string problem = content.other_files > 0 ? "none of the " + std::to_string(content.other_files) +
-                                                      " files in the folder is a scan"
+  const std::size_t files = content.other_files + content.few_points.size();
+  std::string problem = files > 0 ? "none of the " + std::to_string(files) + " files in the folder is a scan"
                         : content.subfolders.empty() ? "the folder is empty"
                                                      : "the folder holds no files";
   const std::string of = std::to_string(content.subfolders.size());
   if (with_scans.empty()) {
     problem += content.subfolders.empty() ? "" : ", and of its subfolders (" + of + ") none holds scans";
-    return bad_input(folder.string(), problem, "name a folder with range grids (PLY, PTX or point files)");
+    return bad_input(folder.string(), problem, mend_of(content));
   }
   std::ranges::sort(with_scans);
   problem += ", but of its subfolders (" + of + ") these hold scans: ";
@@ -91,16 +81,16 @@ Result<ScanFiles> ScanFiles::open(const fs::path& path, const GridReadOptions& o
   if (!fs::is_directory(status)) {
     return ScanFiles({path}, options);
   }
-  std::error_code error;
-  FolderContent content = content_of(path, error);
-  if (error) {
-    return bad_input(path.string(), "the folder cannot be read: " + error.message(), "make it readable");
+  Result<ScanFolder> content = look_into_folder(path);
+  if (!content) {
+    return std::unexpected(content.error());
   }
-  if (content.scans.empty()) {
-    return without_scans(path, content);
+  if (content->scans.empty()) {
+    return without_scans(path, *content);
   }
-  std::ranges::sort(content.scans);
-  return ScanFiles(std::move(content.scans), options);
+  ScanFiles files(std::move(content->scans), options);
+  files.passed_over_ = content->passed_over();
+  return files;
 }
 
 Result<std::optional<ScanData>> ScanFiles::next() {

@@ -179,6 +179,54 @@ TEST_F(ReplayTest, AFolderAboveTheScansSaysWhichToName) {
   EXPECT_THAT(line(), HasSubstr("none of the 1 files in the folder is a scan, but of its subfolders (3)"));
 }
 
+TEST_F(ReplayTest, WhatCannotBeReadAmongOthersIsAnErrorOfItsOwn) {
+  ASSERT_TRUE(write_grid_file(folder_.path() / "b.grid", small_grid(3, 2)));
+  fs::copy_file(folder_.path() / "b.grid", folder_.path() / "a.grid");
+  std::fstream(folder_.path() / "a.grid", std::ios::in | std::ios::out | std::ios::binary) << 'x';
+  std::ofstream(folder_.path() / "c.ptx");
+  fs::create_symlink("gone.ply", folder_.path() / "d.ply");
+  Result<Device> device = open(folder_.path());
+  ASSERT_TRUE(device) << device.error().line();
+  Names sink;
+  const auto refused = [&](const char* line) {
+    const auto outcome = device->scan(sink);
+    ASSERT_FALSE(outcome) << line;
+    EXPECT_EQ(outcome.error().kind, ErrorKind::kBadInput);
+    EXPECT_THAT(outcome.error().line(), HasSubstr(line));
+  };
+  refused("a.grid: not a grid file of Dubsar (its first bytes are others)");
+  ASSERT_EQ(device->scan(sink).value(), ScanOutcome::kScanned);
+  EXPECT_EQ(sink.last.source, "b.grid");
+  refused("c.ptx: the file is empty; copy or export it again");
+  refused("d.ply: a link to a file that is not there; copy the file itself here");
+  EXPECT_EQ(device->scan(sink).value(), ScanOutcome::kExhausted);
+}
+
+TEST_F(ReplayTest, ATextOfFewPointsBesideScansIsPassedOverAndSaid) {
+  ASSERT_TRUE(write_grid_file(folder_.path() / "b.grid", small_grid(3, 2)));
+  std::ofstream(folder_.path() / "pose.txt") << "1 0 0 5\n0 1 0 6\n0 0 1 7\n0 0 0 1\n";
+  testing::internal::CaptureStderr();
+  Result<Device> device = open(folder_.path());
+  EXPECT_THAT(testing::internal::GetCapturedStderr(), HasSubstr("hardly a scan: pose.txt;"));
+  ASSERT_TRUE(device);
+  EXPECT_EQ(device->capabilities()->scan_count, 1);
+  fs::remove(folder_.path() / "b.grid");
+  EXPECT_THAT(
+      open(folder_.path()).error().line(),
+      HasSubstr("none of the 1 files in the folder is a scan; name a file by itself if it is a scan of"));
+  Names named;
+  EXPECT_TRUE(open(folder_.path() / "pose.txt")->scan(named)) << "named itself it is read";
+}
+
+TEST_F(ReplayTest, AFolderOfTablesOrArchivesSaysWhatToDo) {
+  std::ofstream(folder_.path() / "a.csv") << "1,2,3\n";
+  EXPECT_THAT(open(folder_.path()).error().line(),
+              HasSubstr("; rename .csv to .xyz where the lines are points"));
+  std::ofstream(folder_.path() / "b.ply.gz") << "\x1f\x8b";
+  EXPECT_THAT(open(folder_.path()).error().line(),
+              HasSubstr("; unpack the packed files, rename .csv to .xyz"));
+}
+
 TEST_F(ReplayTest, AFolderWithoutScansIsOneClearLine) {
   const auto empty = open(folder_.path());
   ASSERT_FALSE(empty);

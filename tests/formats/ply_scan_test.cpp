@@ -121,6 +121,47 @@ TEST(PlyScan, CentimetresAndInchesAreUnits) {
   EXPECT_EQ(grid_of(parts.text()).point(1), Eigen::Vector3f(25.4F, 0, 12.7F));
 }
 
+TEST(PlyScan, UnitsAreReadAsPeopleWriteThem) {
+  for (const auto& [unit, mm] : {std::pair("Meters", 1000.0F),
+                                 {"metre", 1000.0F},
+                                 {"M", 1000.0F},
+                                 {"MM", 1.0F},
+                                 {"millimeters", 1.0F},
+                                 {"Millimetre", 1.0F},
+                                 {"centimetres", 10.0F},
+                                 {"inch", 25.4F},
+                                 {"Inches", 25.4F},
+                                 {"microns", 0.001F},
+                                 {"micrometer", 0.001F},
+                                 {"micrometres", 0.001F},
+                                 {"\xC2\xB5m", 0.001F},
+                                 {"\xCE\xBCm", 0.001F}}) {
+    Parts parts;
+    parts.info += "obj_info unit " + std::string(unit) + "\n";
+    EXPECT_FLOAT_EQ(grid_of(parts.text()).x[1], mm) << unit;
+  }
+  for (const char* unit : {"milli", "mms", "s", "ounce", "meterss"}) {
+    Parts parts;
+    parts.info += "obj_info unit " + std::string(unit) + "\n";
+    EXPECT_THAT(line(parts), HasSubstr("not m, cm, mm, um or in")) << unit;
+  }
+}
+
+TEST(PlyScan, AByteOrderMarkIsPassedOver) {
+  const auto scans = read_scan_bytes("\xEF\xBB\xBF" + Parts().text(), "a.ply");
+  ASSERT_TRUE(scans) << line_of(scans);
+  expect_the_grid(std::get<RangeGrid>(scans->front()));
+}
+
+TEST(PlyScan, WhatOldPrintfWroteForNoNumberIsNoReturn) {
+  Parts parts;
+  parts.grid.clear();
+  parts.vertex.replace(parts.vertex.find('4'), 1, "6");
+  parts.body =
+      "0 0 0\n1 0 0.5\n1.#QNAN 1.#QNAN 1.#QNAN\n0 1 0\n-1.#IND -1.#IND -1.#IND\n-nan(ind) 1 1.#INF\n";
+  EXPECT_EQ(grid_of(parts.text()).valid, (std::vector<std::uint8_t>{0, 1, 0, 1, 0, 0}));
+}
+
 TEST(PlyScan, ASpacingThatTheSamplesContradictIsMeasuredAndTold) {
   Parts parts;
   std::vector<std::string> told;

@@ -57,6 +57,88 @@ TEST(Ptx, ReadsSeveralScansAndCountsThem) {
   EXPECT_EQ(std::get<RangeGrid>((*scans)[1]).source, "two.ptx#1");
 }
 
+const std::string kPose = "0 0 0\n1 0 0\n0 1 0\n0 0 1\n1 0 0 0\n0 1 0 0\n0 0 1 0\n0 0 0 1\n";
+
+TEST(Ptx, ANoReturnMayLeaveOutWhatFollows) {
+  const auto scans = read_scan_bytes("1\n6\n" + kPose +
+                                         "0 0 0 0\n0 0 0\n0 0.3 -5 0.5 9 8 7\n\n0 0 0\nnan nan nan\n"
+                                         "0 0.6 -5 0.25 1 2 3\n",
+                                     "a.ptx");
+  ASSERT_TRUE(scans) << line_of(scans);
+  const auto& grid = std::get<RangeGrid>(scans->front());
+  EXPECT_EQ(grid.valid, (std::vector<std::uint8_t>{0, 0, 1, 0, 0, 1}));
+  EXPECT_EQ(grid.point(2), Eigen::Vector3f(0, 0.3F, -5));
+  EXPECT_EQ(grid.intensity, (std::vector<float>{0, 0, 0.5F, 0, 0, 0.25F}));
+  EXPECT_EQ(grid.rgb[6], 9);
+  EXPECT_EQ(grid.rgb[17], 3);
+}
+
+TEST(Ptx, ALineThatDoesNotFitIsNamed) {
+  const auto line = [](const std::string& samples) {
+    return line_of(read_scan_bytes("1\n3\n" + kPose + samples, "a.ptx"));
+  };
+  const std::string good = "0 1 -5 0.5\n";
+  EXPECT_THAT(line(good + "0 2 -5\n" + good), HasSubstr("line 12: has 3 numbers where 4 belong"));
+  EXPECT_THAT(line(good + "0 0 0 0 0\n" + good), HasSubstr("line 12: has 5 numbers where 4 belong"));
+  EXPECT_THAT(line(good + "0 0\n0 0\n" + good), HasSubstr("line 12: has 2 numbers where 4 belong"));
+  EXPECT_THAT(line(good + good + "0 2 -5\n"), HasSubstr("ends at sample 2 of 3"));
+  EXPECT_THAT(line("0 1 -5 0.5 3\n" + good + good),
+              HasSubstr("line 11: a sample has 5 numbers, not 3, 4, 6 or 7"));
+  // The header of the next scan is no sample.
+  EXPECT_THAT(line(good + good + "1\n2\n" + kPose + good + good),
+              HasSubstr("line 13: has 1 numbers where 4 belong"));
+}
+
+TEST(Ptx, SixColumnsAreAColourWhereTheyCanBe) {
+  const auto scans = read_scan_bytes("1\n2\n" + kPose + "0 0.1 -5 10 20 30\n0 0.2 -5 255 0 1\n", "a.ptx");
+  ASSERT_TRUE(scans) << line_of(scans);
+  const auto& grid = std::get<RangeGrid>(scans->front());
+  EXPECT_EQ(grid.rgb, (std::vector<std::uint8_t>{10, 20, 30, 255, 0, 1}));
+  EXPECT_TRUE(grid.intensity.empty());
+  EXPECT_THAT(line_of(read_scan_bytes("1\n1\n" + kPose + "0 0.1 -5 0 0.6 -0.8\n", "a.ptx")),
+              HasSubstr("line 11: the last three of its 6 numbers are no colour"));
+}
+
+TEST(Ptx, AScanOfNoSamplesAmongOthersIsPassedOverWithAWord) {
+  const ScratchFolder folder;
+  std::string told;
+  const std::string empty = "0\n0\n" + kPose;
+  const std::string text = kPtx + empty + kPtx;
+  const auto scans = read_scan_bytes(
+      text, "a.ptx",
+      {.remark = [&](const std::string& scan, const std::string& remark) { told += scan + ": " + remark; }});
+  ASSERT_TRUE(scans) << line_of(scans);
+  ASSERT_EQ(scans->size(), 2U);
+  EXPECT_EQ(std::get<RangeGrid>((*scans)[1]).source, "a.ptx#2");
+  EXPECT_EQ(told, "a.ptx#0: a.ptx#1 beside it has no samples and is passed over");
+  ASSERT_TRUE(write_file_atomically(folder / "a.ptx", text));
+  EXPECT_EQ(count_scans(folder / "a.ptx").value(), 2);
+  EXPECT_THAT(line_of(read_scan_bytes(empty, "a.ptx")), HasSubstr("holds no usable sample"));
+}
+
+TEST(Ptx, DecimalCommasAreReadWhereNothingElseCanBeMeant) {
+  std::string with_commas = kPtx;
+  std::ranges::replace(with_commas, '.', ',');
+  const auto points = read_scan_bytes(kPtx, "a.ptx");
+  const auto commas = read_scan_bytes(with_commas, "a.ptx");
+  ASSERT_TRUE(points && commas) << line_of(commas);
+  EXPECT_EQ(std::get<RangeGrid>(commas->front()).y, std::get<RangeGrid>(points->front()).y);
+  EXPECT_THAT(line_of(read_scan_bytes(with_commas + kPtx, "a.ptx")),
+              HasSubstr("line 11: its numbers have commas, and decimal points stand in the file as well"));
+  EXPECT_THAT(line_of(read_scan_bytes("1\n1\n" + kPose + "0, 1, 2\n", "a.ptx")),
+              HasSubstr("line 11: a comma stands where none belongs in PTX"));
+}
+
+TEST(Ptx, ByteOrderMarkAndOldLineEndsAreNoObstacle) {
+  std::string old = kPtx;
+  std::ranges::replace(old, '\n', '\r');
+  for (const std::string& text : {"\xEF\xBB\xBF" + kPtx, old}) {
+    const auto scans = read_scan_bytes(text, "a.ptx");
+    ASSERT_TRUE(scans) << line_of(scans);
+    EXPECT_EQ(std::get<RangeGrid>(scans->front()).valid_count(), 4U);
+  }
+}
+
 /// A dome as PTX, its top at (0, 0, top_mm), turned about that by `turn`.
 std::string dome_ptx(double top_mm, bool with_outline,
                      const Eigen::Matrix3d& turn = Eigen::Matrix3d::Identity()) {
@@ -126,7 +208,8 @@ TEST(Ptx, CoordinatesOfAMapAreNamed) {
 
 TEST(Ptx, NamesWhatIsWrong) {
   const auto line = [](const std::string& text) { return line_of(read_scan_bytes(text, "a.ptx")); };
-  EXPECT_THAT(line(""), HasSubstr("a.ptx: line 1: '' stands where a count"));
+  EXPECT_THAT(line(""), HasSubstr("a.ptx: the file is empty"));
+  EXPECT_THAT(line(" \n"), HasSubstr("a.ptx: line 2: '' stands where a count"));
   EXPECT_THAT(line("-4\n3\n"), HasSubstr("line 1: '-4' stands where a count from 1 to 16777216 belongs"));
   EXPECT_THAT(line("2\nx\n"), HasSubstr("line 2: 'x' stands where a count"));
   EXPECT_THAT(line("2\n3\n1 2 oops"), HasSubstr("line 3: 'oops' stands where the scanner's pose belongs"));
@@ -174,29 +257,44 @@ TEST(PointText, NamesWhatIsWrong) {
   EXPECT_THAT(line("nan nan nan\n"), HasSubstr("holds no usable point"));
 }
 
-TEST(PointText, AProseFileIsNoScan) {
-  const ScratchFolder folder;
-  ASSERT_TRUE(write_file_atomically(folder / "notes.txt", "Scanned on a Monday.\nTen scans.\n"));
-  ASSERT_TRUE(write_file_atomically(folder / "a.asc", "1 2 3\n"));
-  EXPECT_FALSE(looks_like_scan(folder / "notes.txt"));
-  EXPECT_TRUE(looks_like_scan(folder / "a.asc"));
-  EXPECT_FALSE(looks_like_scan(folder / "none.ply"));
-  EXPECT_THAT(line_of(count_scans(folder / "notes.txt")), HasSubstr("not a scan"));
+TEST(PointText, DecimalCommasAreTold) {
+  const auto points = [](const std::string& text) { return read_cloud(text).points; };
+  const std::vector<Eigen::Vector3f> wanted{{-64.5F, 36.25F, 40}, {1, 2, 3.5F}};
+  EXPECT_EQ(points("-64,50 36,25 40,0\n1,0 2,0 3,5\n"), wanted);
+  EXPECT_EQ(points("x;y;z\n-64,50;36,25;40,0\n1,0;2,0;3,5\n"), wanted);
+  // Zeros behind the comma may be left out, even before a line that tells.
+  EXPECT_EQ(points("-64,5\t36,25\t40\n1,0\t2,0\t3,5\n"), wanted);
+  const PointCloud coloured = read_cloud("-64,5 36,25 40,0 10 20 30\n1,0 2,0 3,5 1 2 255\n");
+  EXPECT_EQ(coloured.points, wanted);
+  EXPECT_EQ(coloured.rgb, (std::vector<std::uint8_t>{10, 20, 30, 1, 2, 255}));
+  // Commas between numbers.
+  const std::vector<Eigen::Vector3f> whole{{1, 2, 3}, {4, 5, 6}};
+  for (const char* text : {"1,2,3\n4,5,6\n", "1, 2, 3\n4, 5, 6\n", "1 ,2 ,3\n4,5;6\n", "1,2 3\n4 5,6\n",
+                           "x,y,z\n1.0,2.0,3.0\n4.0,5.0,6.0\n"}) {
+    EXPECT_EQ(points(text), whole) << text;
+  }
 }
 
-TEST(ScanFiles, AGarbledPlyIsNotTakenForSomethingElse) {
-  const ScratchFolder folder;
-  for (const char* bytes : {"", "ply\nformat ascii 1.0\nelement ver", "PK\x03\x04 not a ply at all"}) {
-    ASSERT_TRUE(write_file_atomically(folder / "scan.ply", bytes));
-    EXPECT_TRUE(looks_like_scan(folder / "scan.ply")) << bytes;
-    EXPECT_FALSE(read_scan_file(folder / "scan.ply")) << bytes;
-  }
-  ASSERT_TRUE(write_file_atomically(folder / "mesh.ply",
-                                    "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\n"
-                                    "property float y\nproperty float z\nelement face 1\n"
-                                    "property list uchar int vertex_indices\nend_header\n"
-                                    "0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n"));
-  EXPECT_FALSE(looks_like_scan(folder / "mesh.ply"));
+TEST(PointText, CommasThatMayBeEitherAreRefused) {
+  const auto line = [](const std::string& text) { return line_of(read_scan_bytes(text, "a.xyz")); };
+  EXPECT_THAT(
+      line("1 2 3\n4 5,6 7\n"),
+      HasSubstr("line 2: nothing tells whether its commas stand in numbers or between them; export the "
+                "points with decimal points"));
+  EXPECT_THAT(line("1,234.5 2,345.5 3,456.5\n"), HasSubstr("line 1: nothing tells"));
+  EXPECT_THAT(line("1,5 2,5 3,5\n1,2,3\n"),
+              HasSubstr("line 2: its commas stand between numbers, those of other lines in them"));
+  EXPECT_THAT(line("1,2,3\n1,5 2,5 3,5\n"),
+              HasSubstr("line 2: its commas stand in numbers, those of other lines between them"));
+}
+
+TEST(PointText, WhatOldPrintfWroteForNoNumberIsNoReturn) {
+  const PointCloud cloud = read_cloud(
+      "4 5 6\n1.#QNAN 1.#QNAN0 1.#QNAN\n-1.#IND 0 0\n1.#INF00 0 0\n-nan(ind) nan(0x8) NaN(snan)\n");
+  ASSERT_EQ(cloud.points.size(), 1U);
+  EXPECT_EQ(cloud.points[0], Eigen::Vector3f(4, 5, 6));
+  EXPECT_THAT(line_of(read_scan_bytes("4 5 6\n1 2 1#QNAN\n", "a.xyz")),
+              HasSubstr("line 2: '1#QNAN' is not a number"));
 }
 
 TEST(TextScanner, NumbersThatNoDoubleHoldsAreZeroOrInfinityWhateverTheHostsLocale) {

@@ -70,7 +70,8 @@ TEST(FileWords, NoRefusalOfAReaderIsHalfGerman) {
        "formats/red_map_json.cpp",  "formats/wedge_json.cpp",       "formats/search_index.cpp",
        "formats/sha2.cpp",          "formats/writers_turn.cpp",     "formats/seen_side.cpp",
        "acquisition/resample.cpp",  "formats/refusal.cpp",          "formats/draco_decode.cpp",
-       "formats/draco_encode.cpp",  "formats/gltf_primitive.cpp",   "formats/mesh_glb_writer.cpp"},
+       "formats/draco_encode.cpp",  "formats/gltf_primitive.cpp",   "formats/mesh_glb_writer.cpp",
+       "formats/comma_use.cpp",     "formats/ptx_samples.cpp",      "formats/scan_folder.cpp"},
       and_these({"`obj_info dubsar_direction "}));
   EXPECT_GT(sentences, 150);
 }
@@ -184,6 +185,15 @@ TEST(FileWords, WhatStandsAroundNamesAndNumbersIsGerman) {
         {"obj_info unit is 'yard', not m, cm, mm, um or in",
          "obj_info unit ist 'yard', nicht m, cm, mm, um oder in"},
         {"line 3: has 2 numbers where 3 belong", "Zeile 3: hat 2 Zahlen statt 3"},
+        {"none of the 2 files in the folder is a scan; unpack the packed files, rename .csv to .xyz where "
+         "the "
+         "lines are points, name a file by itself if it is a scan of fewer than 100 points",
+         "kein Scan unter den 2 Dateien im Ordner; die gepackten Dateien auspacken, .csv in .xyz umbenennen, "
+         "wo "
+         "die Zeilen Punkte sind, eine Datei selbst nennen, wenn sie ein Scan aus weniger als 100 Punkten "
+         "ist"},
+        {"a.ptx#1 beside it has no samples and is passed over",
+         "a.ptx#1 daneben hat keine Messpunkte und wird übergangen"},
         {"claims 12 of element vertex, but only 7 bytes are left for them",
          "nennt 12 vom Element vertex, aber nur 7 Byte sind dafür da"},
         {"ends within vertex 3 of 10", "endet mitten in Punkt 3 von 10"},
