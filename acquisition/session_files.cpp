@@ -12,6 +12,7 @@
 #include "formats/atomic_file.h"
 #include "formats/make_folder.h"
 #include "formats/refusal.h"
+#include "formats/same_bytes.h"
 
 namespace dubsar::session {
 
@@ -188,6 +189,10 @@ Status write_sums(const fs::path& folder, const Sums& sums) {
   return write_file_atomically(folder / kSums, text_of_sums(sums));
 }
 
+Status take_sum_away(const fs::path& folder, Sums sums) {
+  return sums.erase(kDatabase) > 0 ? write_sums(folder, sums) : Status();
+}
+
 bool is_set_aside(const fs::path& path) {
   return std::ranges::any_of(
       path, [](const fs::path& part) { return part.string().find(kAsideMark) != std::string::npos; });
@@ -218,6 +223,13 @@ Result<fs::path> move_aside(const fs::path& path) {
 }
 
 Result<fs::path> copy_aside(const fs::path& path) {
+  std::error_code ignored;
+  for (int i = 1; fs::exists(path.string() + kAsideMark + std::to_string(i), ignored); ++i) {
+    fs::path kept = path.string() + kAsideMark + std::to_string(i);
+    if (!fs::is_symlink(kept, ignored) && have_same_bytes(path, kept)) {
+      return kept;
+    }
+  }
   const Result<std::string> bytes = read_whole_file(path);
   if (!bytes) {
     return std::unexpected(bytes.error());

@@ -60,6 +60,8 @@ using Sums = std::multimap<std::string, FileSum>;
 [[nodiscard]] Result<Sums> parse_sums(std::string_view text, const std::string& where);
 [[nodiscard]] std::string text_of_sums(const Sums& sums);
 [[nodiscard]] Status write_sums(const std::filesystem::path& folder, const Sums& sums);
+/// Once something is written the old checksum of the database is wrong; the backup's stays good.
+[[nodiscard]] Status take_sum_away(const std::filesystem::path& folder, Sums sums);
 
 /// Damaged originals are kept beside what takes their place, as NAME.damaged-1, -2, …; so is a folder that
 /// one lies in.
@@ -69,7 +71,8 @@ inline constexpr const char* kAsideMark = ".damaged-";
 [[nodiscard]] std::filesystem::path name_aside(const std::filesystem::path& path);
 /// Moves a damaged file, or a folder with one, to its name aside, durably, and returns that name.
 [[nodiscard]] Result<std::filesystem::path> move_aside(const std::filesystem::path& path);
-/// Copies a damaged file to its name aside, durably, and returns that name; the file itself stays.
+/// Copies a damaged file to its name aside, durably, and returns that name; the file itself stays. Where the
+/// same bytes lie aside already, that is their name.
 [[nodiscard]] Result<std::filesystem::path> copy_aside(const std::filesystem::path& path);
 
 }  // namespace dubsar::session

@@ -8,6 +8,7 @@
 
 #include "acquisition/session_files.h"
 #include "acquisition/session_lock.h"
+#include "acquisition/session_losses.h"
 #include "acquisition/session_store.h"
 #include "acquisition/session_tables.h"
 #include "acquisition/sqlite_db.h"
@@ -20,6 +21,7 @@ struct SessionStore::Impl {
   std::optional<session::FolderLock> lock;
   std::optional<SqlDatabase> db;  ///< for reading: a copy in memory
   bool rebuilt = false;           ///< db was put together from what a damaged one left
+  session::Losses lost;           ///< for reading: what is, and is not noted in db
   SessionOpening opening;
   std::vector<int> damaged_grids;  ///< ids, as seen while opening
   mutable std::mutex mutex;        ///< of db and damaged_grids
@@ -31,6 +33,8 @@ struct SessionStore::Impl {
   [[nodiscard]] Result<int> next_id();
   /// The checks of opening that follow once db stands: rows, grids without a row, rows without their grid.
   [[nodiscard]] Status reconcile();
+  /// Takes a whole grid in that has no row.
+  [[nodiscard]] Status adopt(int id, const session::FileSum& sum, const RangeGrid& grid);
 };
 
 namespace session {
@@ -42,7 +46,14 @@ namespace session {
                                                    SessionOpening& opening, bool& rebuilt);
 /// A copy of the database in memory, or what can be saved of it.
 [[nodiscard]] Result<SqlDatabase> open_for_reading(const std::filesystem::path& folder,
-                                                   SessionOpening& opening, bool& rebuilt);
+                                                   SessionOpening& opening, bool& rebuilt, Losses& lost);
+/// kBadInput, which names the mend, where tables or log are damaged: nothing was written then.
+[[nodiscard]] Status check_records(const std::filesystem::path& folder);
+/// Takes what the session has lost of its records from a copy of it. Errors: of its database; a copy that
+/// does not do is told in `opening`.
+[[nodiscard]] Status bring_back_records(const std::filesystem::path& folder,
+                                        const std::filesystem::path& copy, SqlDatabase& db,
+                                        SessionOpening& opening);
 /// Closes db, leaving one file without a log beside it, its backup and their checksums.
 void close_cleanly(const std::filesystem::path& folder, std::optional<SqlDatabase>& db);
 

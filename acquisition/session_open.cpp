@@ -57,23 +57,23 @@ std::optional<Error> fault_of(SqlDatabase& db, const std::string& where) {
 }
 
 /// A log with a damaged middle is played up to there and no further. Says so, and for writing keeps database
-/// and log as they were.
-Status tell_lost_commits(const fs::path& folder, SessionOpening& opening, bool keep) {
+/// and log as they were. Returns whether there is one.
+Result<bool> tell_lost_commits(const fs::path& folder, SessionOpening& opening, bool keep) {
   const fs::path path = beside(folder / kDatabase, "-wal");
   const Result<LogState> log = read_log(path);
   if (!log || log->lost_commits == 0) {
-    return {};
+    return false;
   }
   opening.damage.push_back(lost_commits_error(*log, path.string()));
   if (!keep) {
-    return {};
+    return true;
   }
   const Result<std::vector<std::string>> aside = keep_aside(folder);
   if (!aside) {
     return std::unexpected(aside.error());
   }
   opening.notes.push_back("kept the damaged log as " + aside->back());
-  return {};
+  return true;
 }
 
 /// Copies database and log to where the log can be played, for a session on a disk that cannot be written.
@@ -126,15 +126,10 @@ Result<SqlDatabase> open_for_writing(const fs::path& folder, SessionOpening& ope
   const fs::path path = folder / kDatabase;
   const bool missing = is_gone(folder);
   opening.created = !missing && !has_content(path);
-  // Once something is written the old checksum is wrong; the backup's stays good.
-  Sums sums = read_sums(folder).value_or(Sums());
-  if (sums.erase(kDatabase) > 0) {
-    if (Status written = write_sums(folder, sums); !written) {
-      return std::unexpected(written.error());
-    }
-  }
-  if (Status told = tell_lost_commits(folder, opening, true); !told) {
-    return std::unexpected(told.error());
+  const Result<Sums> sums = read_sums(folder);
+  const Result<bool> commits_lost = tell_lost_commits(folder, opening, true);
+  if (!commits_lost) {
+    return std::unexpected(commits_lost.error());
   }
   Result<SqlDatabase> db = SqlDatabase::open(path, SqlDatabase::Mode::kCreate);
   std::optional<Error> fault;
@@ -147,13 +142,18 @@ Result<SqlDatabase> open_for_writing(const fs::path& folder, SessionOpening& ope
   }
   if (fault && fault->kind == ErrorKind::kBadInput) {
     db = std::unexpected(*fault);  // closes it
-    db = rebuild(folder, *fault, opening);
+    db = rebuild(folder, *fault, sums, opening);
     rebuilt = db.has_value();
   } else if (fault) {
     return std::unexpected(*fault);
+  } else if (Status kept = keep_backup_aside(folder, sums, false, opening); !kept) {
+    return std::unexpected(kept.error());
   }
   if (!db) {
     return db;
+  }
+  if (Status taken = take_sum_away(folder, sums.value_or(Sums())); !taken) {
+    return std::unexpected(taken.error());
   }
   if (Status durable = db->execute(kDurable); !durable) {
     return std::unexpected(durable.error());
@@ -161,18 +161,26 @@ Result<SqlDatabase> open_for_writing(const fs::path& folder, SessionOpening& ope
   if (Status synced = sync_folder(folder); !synced) {
     return std::unexpected(synced.error());
   }
+  if (*commits_lost) {
+    if (Status noted = note_losses(*db, {{}, true}); !noted) {
+      return std::unexpected(noted.error());
+    }
+  }
   return db;
 }
 
-Result<SqlDatabase> open_for_reading(const fs::path& folder, SessionOpening& opening, bool& rebuilt) {
+Result<SqlDatabase> open_for_reading(const fs::path& folder, SessionOpening& opening, bool& rebuilt,
+                                     Losses& lost) {
   Result<SqlDatabase> memory = SqlDatabase::open(folder / kDatabase, SqlDatabase::Mode::kMemory);
   if (!memory) {
     return memory;
   }
   const std::string where = (folder / kDatabase).string();
-  if (Status told = tell_lost_commits(folder, opening, false); !told) {
-    return std::unexpected(told.error());
+  const Result<bool> commits_lost = tell_lost_commits(folder, opening, false);
+  if (!commits_lost) {
+    return std::unexpected(commits_lost.error());
   }
+  lost.more = *commits_lost;
   const bool gone = is_gone(folder);
   std::optional<Error> fault;
   if (gone) {
@@ -192,13 +200,32 @@ Result<SqlDatabase> open_for_reading(const fs::path& folder, SessionOpening& ope
   if (!memory) {
     return memory;
   }
-  const Result<std::int64_t> rows = fill_from_remains(folder, *memory);
-  if (!rows) {
-    return std::unexpected(rows.error());
+  Result<Salvaged> salvaged = fill_from_remains(folder, read_sums(folder).value_or(Sums()), *memory);
+  if (!salvaged) {
+    return std::unexpected(salvaged.error());
   }
-  note_rebuilding(*fault, *rows, opening);
+  note_rebuilding(folder, *fault, *salvaged, opening);
   rebuilt = true;
+  salvaged->lost.more = salvaged->lost.more || lost.more;
+  lost = std::move(salvaged->lost);
   return memory;
+}
+
+Status check_records(const fs::path& folder) {
+  SessionOpening opening;
+  bool rebuilt = false;
+  Losses lost;
+  const Result<SqlDatabase> db = open_for_reading(folder, opening, rebuilt, lost);
+  if (!db) {
+    return std::unexpected(db.error());
+  }
+  if (opening.damage.empty()) {
+    return {};
+  }
+  return bad_input(folder.string(),
+                   "its records are damaged, and nothing was changed: " + opening.damage.front().what,
+                   "mend them first, from a copy where there is one (dubsar verify --repair --from COPY " +
+                       word_of(folder) + ")");
 }
 
 void close_cleanly(const fs::path& folder, std::optional<SqlDatabase>& db) {

@@ -5,6 +5,7 @@
 
 #include "acquisition/session_impl.h"
 #include "acquisition/session_query.h"
+#include "acquisition/session_rebuild.h"
 #include "formats/atomic_file.h"
 #include "formats/grid_file.h"
 #include "formats/self_checked.h"
@@ -124,6 +125,14 @@ Result<std::vector<std::string>> SessionStore::keep_damaged_records(const fs::pa
     std::error_code ignored;
     const bool damaged = std::ranges::find(found.damaged, name, &Error::where) != found.damaged.end();
     if (!damaged || !fs::exists(folder / name, ignored)) {
+      continue;
+    }
+    if (name == std::string_view(session::kDatabase)) {  // and its log, as rebuilding keeps the two
+      Result<std::vector<std::string>> both = session::keep_aside(folder);
+      if (!both) {
+        return std::unexpected(both.error());
+      }
+      out.insert(out.end(), both->begin(), both->end());
       continue;
     }
     const Result<fs::path> aside = session::copy_aside(folder / name);

@@ -29,20 +29,32 @@ constexpr const char* kScanStored = "scan stored";
 /// earlier versions, which have none, need no other tables.
 Result<std::map<int, std::string>> stored_remarks(SqlDatabase& db) {
   std::map<int, std::string> out;
+  std::map<int, std::string> unknown;  // what could not be told of scans whose row was lost
   const Status read = for_each_row(
       db, "SELECT kind, json FROM events WHERE sum IS dubsar_sum(number,time_ns,kind,json) ORDER BY number",
       [&](const SqlStatement& row) -> Status {
-        if (row.text(0) != kScanStored) {
+        const std::string kind = row.text(0);
+        if (kind != kScanStored && kind != session::kAdopted && kind != session::kBroughtBack) {
           return {};
         }
         const nlohmann::json detail = nlohmann::json::parse(row.text(1), nullptr, false);
+        if (kind == session::kBroughtBack) {
+          if (detail.is_object() && detail.value("all", nlohmann::json()) == true) {
+            unknown.clear();
+          }
+          return {};
+        }
         const auto id = detail.is_object() ? detail.find("id") : detail.end();
         const auto remark = detail.is_object() ? detail.find("remark") : detail.end();
         if (remark != detail.end() && remark->is_string() && id != detail.end() && id->is_number_integer()) {
-          out[id->get<int>()] = remark->get<std::string>();
+          (kind == kScanStored ? out : unknown)[id->get<int>()] = remark->get<std::string>();
         }
         return {};
       });
+  for (const auto& [id, remark] : unknown) {
+    std::string& said = out[id];
+    said += (said.empty() ? "" : "; ") + remark;
+  }
   return read ? Result<std::map<int, std::string>>(std::move(out)) : std::unexpected(read.error());
 }
 
@@ -103,7 +115,17 @@ bool SessionStore::is_session(const fs::path& folder) {
          !session::grid_ids(folder).empty();
 }
 
-Result<SessionStore> SessionStore::open_or_create(const fs::path& folder) {
+Result<SessionStore> SessionStore::open_or_create(const fs::path& folder, OnDamage on_damage) {
+  return open_for_writing(folder, on_damage, nullptr);
+}
+
+Result<SessionStore> SessionStore::open_with_copy(const fs::path& folder, const fs::path& copy) {
+  const Status there = check_is_session(folder);
+  return there ? open_for_writing(folder, OnDamage::kRebuild, &copy) : std::unexpected(there.error());
+}
+
+Result<SessionStore> SessionStore::open_for_writing(const fs::path& folder, OnDamage on_damage,
+                                                    const fs::path* copy) {
   if (Status made = session::make_folders(folder); !made) {
     return std::unexpected(made.error());
   }
@@ -117,6 +139,11 @@ Result<SessionStore> SessionStore::open_or_create(const fs::path& folder) {
     return std::unexpected(lock.error());
   }
   impl->lock = std::move(*lock);
+  if (on_damage == OnDamage::kRefuse && is_session(folder)) {
+    if (Status whole = session::check_records(folder); !whole) {
+      return std::unexpected(whole.error());
+    }
+  }
   if (Status apart = session::take_tables_apart(folder); !apart) {
     return std::unexpected(apart.error());
   }
@@ -128,23 +155,28 @@ Result<SessionStore> SessionStore::open_or_create(const fs::path& folder) {
     return std::unexpected(db.error());
   }
   impl->db = std::move(*db);
+  if (copy != nullptr) {
+    if (Status back = session::bring_back_records(folder, *copy, *impl->db, impl->opening); !back) {
+      return std::unexpected(back.error());
+    }
+  }
   if (Status reconciled = impl->reconcile(); !reconciled) {
     return std::unexpected(reconciled.error());
   }
   return SessionStore(std::move(impl));
 }
 
-Result<SessionStore> SessionStore::open(const fs::path& folder, Access access) {
+Result<SessionStore> SessionStore::open(const fs::path& folder, Access access, OnDamage on_damage) {
   if (Status there = check_is_session(folder); !there) {
     return std::unexpected(there.error());
   }
   if (access == Access::kReadWrite) {
-    return open_or_create(folder);
+    return open_or_create(folder, on_damage);
   }
   auto impl = std::make_unique<Impl>();
   impl->folder = folder;
   impl->access = access;
-  Result<SqlDatabase> db = session::open_for_reading(folder, impl->opening, impl->rebuilt);
+  Result<SqlDatabase> db = session::open_for_reading(folder, impl->opening, impl->rebuilt, impl->lost);
   if (!db) {
     return std::unexpected(db.error());
   }
@@ -304,18 +336,11 @@ Status mark_scan(SqlDatabase& db, int id, bool dropped, std::string_view why, co
     if (!stood || (*stood != 0) == dropped) {
       return stood ? Status() : std::unexpected(stood.error());
     }
-    Result<SqlStatement> mark = db.prepare(
-        "UPDATE scans SET dropped = ?2, note = ?3, sum = dubsar_sum(id,file,bytes,hash,rows,cols,samples,"
-        "spacing_mm,timestamp_ns,device,source,?2,?3) WHERE id = ?1");
-    if (!mark) {
-      return std::unexpected(mark.error());
-    }
-    mark->bind(1, id).bind(2, dropped ? 1 : 0).bind(3, why);
-    if (Status marked = mark->run(); !marked) {
+    if (Status marked = session::put_dropped(db, id, dropped, why); !marked) {
       return marked;
     }
     const nlohmann::json detail{{"id", id}, {"why", std::string(why)}};
-    return session::insert_event(db, dropped ? "scan dropped" : "scan restored",
+    return session::insert_event(db, dropped ? session::kScanDropped : session::kScanRestored,
                                  detail.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
   });
 }

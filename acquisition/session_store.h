@@ -48,16 +48,21 @@ struct SessionOpening {
   bool created = false;
   std::vector<Error> damage;
   std::vector<std::string> notes;  ///< what was recovered, one line each
+  std::vector<std::string>
+      brought_back;  ///< records that came from a copy ("events row 12", "9 rows of events")
+  std::optional<Error> no_use_of_copy;  ///< why it gave no records, where some are lost
 };
 
 /// The answer of verify(). Names are relative to the session folder; every file of it is in one of the lists,
 /// except for the lock, which holds nothing.
 struct VerifyReport {
   std::vector<Error> damaged;  ///< missing ones too
+  std::vector<Error> lost;     ///< records that were damaged before and that nothing has brought back since
   std::vector<std::string> whole;
   std::vector<std::string> unrecorded;  ///< files of the session that it keeps no checksum of
   std::vector<std::string> extra;       ///< what is no part of the session
   std::vector<std::string> set_aside;   ///< damaged originals that were kept when something was rebuilt
+  /// Every stored byte is what it was. What is lost is not stored any more.
   [[nodiscard]] bool ok() const { return damaged.empty(); }
 };
 
@@ -79,14 +84,25 @@ struct RepairReport {
 class SessionStore {
  public:
   enum class Access { kReadOnly, kReadWrite };
+  /// What becomes of damaged tables when a session is opened for writing. Refused (kBadInput), nothing of the
+  /// folder is changed, and a copy can still be asked for what stood there.
+  enum class OnDamage { kRebuild, kRefuse };
 
   /// Opens the session in the folder for writing, or makes one: the folder is then new, empty or what is left
   /// of a session. A folder with other things in it is refused.
-  [[nodiscard]] static Result<SessionStore> open_or_create(const std::filesystem::path& folder);
+  [[nodiscard]] static Result<SessionStore> open_or_create(const std::filesystem::path& folder,
+                                                           OnDamage on_damage = OnDamage::kRebuild);
   /// Opens a session that must exist. A damaged database is rebuilt from its readable rows, its last backup
   /// and the grids: for writing, with the bad file kept aside; for reading, in memory.
   [[nodiscard]] static Result<SessionStore> open(const std::filesystem::path& folder,
-                                                 Access access = Access::kReadWrite);
+                                                 Access access = Access::kReadWrite,
+                                                 OnDamage on_damage = OnDamage::kRebuild);
+  /// Opens a session that must exist for writing, and takes what it has lost of its records, now or before,
+  /// from a copy of it. That is one only where both have an event that is the same, or, where no event is
+  /// left, a grid that is, and no grid that is not; where a session was gone on with after its loss, what was
+  /// recorded since follows what comes back. Rows that the session has stay as they are.
+  [[nodiscard]] static Result<SessionStore> open_with_copy(const std::filesystem::path& folder,
+                                                           const std::filesystem::path& copy);
   /// True when the folder looks like a session, whole or damaged.
   [[nodiscard]] static bool is_session(const std::filesystem::path& folder);
 
@@ -163,6 +179,9 @@ class SessionStore {
 
  private:
   struct Impl;
+  [[nodiscard]] static Result<SessionStore> open_for_writing(const std::filesystem::path& folder,
+                                                             OnDamage on_damage,
+                                                             const std::filesystem::path* copy);
   explicit SessionStore(std::unique_ptr<Impl> impl);
   std::unique_ptr<Impl> impl_;
 };

@@ -7,7 +7,6 @@
 #include "acquisition/session_links.h"
 #include "acquisition/session_log.h"
 #include "acquisition/session_query.h"
-#include "core/shell_word.h"
 #include "formats/atomic_file.h"
 #include "formats/files_below.h"
 #include "formats/grid_file.h"
@@ -43,16 +42,8 @@ Result<std::vector<Recorded>> recorded(SqlDatabase& db, const char* sql) {
 constexpr const char* kScanFiles = "SELECT id, file, bytes, hash FROM scans ORDER BY id";
 constexpr const char* kOtherFiles = "SELECT -1, path, bytes, hash FROM files ORDER BY path";
 
-/// The session as a word of the command line that mends it: whoever reads this may sit at the window, or
-/// elsewhere than where it was started.
-std::string word_of(const fs::path& folder) {
-  std::error_code ignored;
-  const fs::path whole = fs::absolute(folder, ignored).lexically_normal();
-  return shell_word((whole.has_filename() ? whole : whole.parent_path()).string());
-}
-
 std::string from_a_copy(const fs::path& folder, const char* end) {
-  return "bring it back from a copy (dubsar verify --repair --from COPY " + word_of(folder) + end;
+  return "bring it back from a copy (dubsar verify --repair --from COPY " + session::word_of(folder) + end;
 }
 
 /// Nothing when the file is as it was stored.
@@ -67,7 +58,7 @@ std::optional<Error> fault_of_file(const fs::path& folder, const std::string& na
     return link;
   }
   const std::string mend = name.ends_with(".grid") ? from_a_copy(folder, ") or scan again")
-                                                   : "dubsar verify --repair " + word_of(folder) +
+                                                   : "dubsar verify --repair " + session::word_of(folder) +
                                                          (in_a_folder ? " makes it anew" : " mends it");
   std::error_code unknown;
   if (!fs::exists(folder / name, unknown)) {
@@ -159,8 +150,8 @@ void place_the_rest(const fs::path& folder, const std::vector<Recorded>& checked
 
 /// What is wrong with the tables, with the log beside them, and with the list of checksums.
 void check_records(SqlDatabase& db, const fs::path& folder, VerifyReport& report) {
-  const std::string mend =
-      "dubsar verify --repair " + word_of(folder) + " rebuilds it from its rows, its backup and the grids";
+  const std::string mend = "dubsar verify --repair " + session::word_of(folder) +
+                           " rebuilds it from its rows, its backup and the grids";
   const std::string fault = db.structure_fault();
   const Result<std::vector<std::string>> rows = session::damaged_rows(db);
   if (!fault.empty() || !rows) {
@@ -181,6 +172,45 @@ void check_records(SqlDatabase& db, const fs::path& folder, VerifyReport& report
 }
 
 }  // namespace
+
+Status SessionStore::Impl::adopt(int id, const FileSum& sum, const RangeGrid& grid) {
+  // Of a scan whose row was lost the record still tells whether it was taken out, as far as it goes. Where
+  // nothing was rebuilt it is one that a kill left unlisted.
+  Result<session::Losses> standing = rebuilt ? session::standing_losses(*db) : session::Losses();
+  const Result<std::map<int, session::DropState>> drops = session::dropped_by_record(*db);
+  if (!standing || !drops) {
+    return std::unexpected(standing ? drops.error() : standing.error());
+  }
+  standing->rows.merge(session::Losses(lost).rows);
+  const bool was_listed = standing->rows.contains(session::row_name("scans", std::to_string(id)));
+  const bool unknown =
+      standing->more || lost.more ||
+      std::ranges::any_of(standing->rows, [](const std::string& row) { return row.starts_with("events "); });
+  const auto known = drops->find(id);
+  const bool dropped = known != drops->end() && known->second.dropped;
+  nlohmann::ordered_json detail{{"id", id}};
+  if (unknown) {
+    detail["remark"] = "records of it are lost: it may have been taken out";
+  }
+  const Status done = session::in_transaction(*db, [&]() -> Status {
+    if (Status put = session::insert_scan(*db, id, sum, grid); !put) {
+      return put;
+    }
+    if (Status marked = dropped ? session::put_dropped(*db, id, true, known->second.why) : Status();
+        !marked) {
+      return marked;
+    }
+    return session::insert_event(*db, session::kAdopted, detail.dump());
+  });
+  if (!done) {
+    return done;
+  }
+  std::string note = "took in " + session::grid_name(id);
+  note += was_listed || unknown ? ", whose row was lost" : ", which was stored and not yet listed";
+  note += dropped ? ": taken out, as its record says" : unknown ? "; it may have been taken out" : "";
+  opening.notes.push_back(note);
+  return {};
+}
 
 Status SessionStore::Impl::reconcile() {
   const Result<std::vector<Recorded>> listed = recorded(*db, kScanFiles);
@@ -206,17 +236,10 @@ Status SessionStore::Impl::reconcile() {
       opening.damage.push_back(grid.error());
       continue;
     }
-    const Status adopted = session::in_transaction(*db, [&]() -> Status {
-      const FileSum sum{static_cast<std::int64_t>(bytes->size()), session::hash_of(*bytes)};
-      if (Status put = session::insert_scan(*db, id, sum, *grid); !put) {
-        return put;
-      }
-      return session::insert_event(*db, "scan adopted", "{\"id\":" + std::to_string(id) + "}");
-    });
-    if (!adopted) {
+    const FileSum sum{static_cast<std::int64_t>(bytes->size()), session::hash_of(*bytes)};
+    if (Status adopted = adopt(id, sum, *grid); !adopted) {
       return adopted;
     }
-    opening.notes.push_back("took in " + name + ", which was stored and not yet listed");
   }
   return {};
 }
@@ -238,6 +261,13 @@ Result<VerifyReport> SessionStore::verify(JobContext& job) const {
       }
       files.insert(files.end(), more->begin(), more->end());
     }
+    Result<session::Losses> lost = session::standing_losses(*impl_->db);
+    if (!lost) {
+      return std::unexpected(lost.error());
+    }
+    lost->rows.insert(impl_->lost.rows.begin(), impl_->lost.rows.end());
+    lost->more = lost->more || impl_->lost.more;
+    report.lost = session::told_losses(*lost, session::kDatabase, folder);
   }
   const bool database_whole = report.damaged.empty();  // as far as its rows tell
   // Grids that cannot be read and were never listed: seen while opening, in no table.
@@ -265,7 +295,7 @@ Result<VerifyReport> SessionStore::verify(JobContext& job) const {
   if (impl_->access == Access::kReadOnly && fs::exists(folder / session::kBackup, unknown) &&
       !fs::exists(folder / session::kSums, unknown) && !unknown) {
     report.damaged.push_back({ErrorKind::kBadInput, "missing", session::kSums,
-                              "dubsar verify --repair " + word_of(folder) + " makes it anew"});
+                              "dubsar verify --repair " + session::word_of(folder) + " makes it anew"});
   }
   bool database_summed = false;
   for (const char* name : {session::kDatabase, session::kBackup}) {

@@ -34,8 +34,10 @@ bool is_grid(const StampedFile& file) {
 }
 
 Error lost(const std::string& what, const fs::path& package) {
-  return {ErrorKind::kBadInput, what + ", and the package that lies here holds it", package.string(),
-          "mend the session (dubsar verify --repair --from COPY), or choose another folder"};
+  return {
+      ErrorKind::kBadInput, what + ", and the package that lies here holds it", package.string(),
+      "bring it back from a copy of the session (dubsar verify --repair --from COPY); where there is none, "
+      "choose another folder: the package that lies here keeps it"};
 }
 
 Error not_as_written(const std::string& name, const std::string& what, const fs::path& package) {
@@ -65,11 +67,12 @@ nlohmann::json packed_events(const fs::path& package) {
   return events.is_array() ? std::move(events) : nlohmann::json::array();
 }
 
+/// Under whatever number: what was recorded after a loss is numbered anew when a copy brings back what was
+/// lost.
 bool holds(const std::vector<SessionEvent>& events, const nlohmann::json& packed) {
   const std::string kind = text_of(packed, "kind");
   return std::ranges::any_of(events, [&](const SessionEvent& own) {
-    return number_of(packed, "number") == own.number && number_of(packed, "time_ns") == own.time_ns &&
-           kind == own.kind;
+    return number_of(packed, "time_ns") == own.time_ns && kind == own.kind;
   });
 }
 

@@ -6,6 +6,7 @@
 #include "station/calibration_record.h"
 #include "station/engine_impl.h"
 #include "station/range_camera_record.h"
+#include "station/told_session.h"
 
 namespace dubsar {
 
@@ -150,11 +151,8 @@ Status Engine::Impl::open(JobContext& job) {
     return std::unexpected(session.error());
   }
   store = std::move(*session);
-  for (const Error& damage : store->opening().damage) {
-    emit(Notice{"damaged: " + damage.line()});
-  }
-  for (const std::string& note : store->opening().notes) {
-    emit(Notice{note});
+  for (const std::string& line : told_of_opening(*store)) {
+    emit(Notice{line});
   }
   if (rig) {
     if (const Status saved = store->save_document("rig", rig_to_json(*rig)); !saved) {

@@ -17,6 +17,7 @@
 #include "station/plan_again.h"
 #include "station/results.h"
 #include "station/session_pins.h"
+#include "station/told_session.h"
 #include "station/unfinished_scan.h"
 
 namespace dubsar {
@@ -138,8 +139,9 @@ void LiveSession::look_for_broken_off() {
 }
 
 void LiveSession::show_scans(const SessionStore& store, const std::vector<StoredScan>& scans) {
-  for (const Error& damage : store.opening().damage) {
-    state_.notice = damage.line();
+  // What is first told weighs most: the database, before the grids.
+  if (const std::vector<std::string> told = told_of_opening(store); !told.empty()) {
+    state_.notice = told.front();
   }
   for (const StoredScan& stored : scans) {
     LiveScan& scan = scan_of(stored.id);

@@ -267,7 +267,8 @@ void LiveSession::describe(const TabletRecord& record) {
 }
 
 void LiveSession::keep_record(const TabletRecord& record) {
-  Result<SessionStore> store = SessionStore::open_or_create(options_.session);
+  Result<SessionStore> store =
+      SessionStore::open_or_create(options_.session, SessionStore::OnDamage::kRefuse);
   end(store ? keep_tablet_record(*store, record) : std::unexpected(store.error()));
 }
 

@@ -58,11 +58,16 @@ Result<Mended> mend_session(const fs::path& session, const VerifyReport& found,
   RepairReport repaired;
   std::string lost_scan;  // one that the derived files would lack
   {
-    Result<SessionStore> store = SessionStore::open(session);
+    Result<SessionStore> store =
+        copy ? SessionStore::open_with_copy(session, *copy) : SessionStore::open(session);
     if (!store) {
       return std::unexpected(store.error());
     }
     out.notes = store->opening().notes;
+    out.records = store->opening().brought_back;
+    if (store->opening().no_use_of_copy) {
+      out.beyond.push_back(*store->opening().no_use_of_copy);
+    }
     // Opened for writing, the tables are whole; what the grids and other files are is to be seen once more.
     Result<VerifyReport> now = store->verify(job);
     if (!now) {
@@ -82,7 +87,7 @@ Result<Mended> mend_session(const fs::path& session, const VerifyReport& found,
     }
   }
   out.restored = repaired.restored;
-  out.beyond = repaired.beyond;
+  out.beyond.insert(out.beyond.end(), repaired.beyond.begin(), repaired.beyond.end());
   if (!repaired.derived.empty() && !lost_scan.empty()) {
     // It would be made of fewer scans than the one that was lost, and nobody could tell.
     for (const std::string& name : repaired.derived) {

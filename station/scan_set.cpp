@@ -49,6 +49,9 @@ Status load_session(const fs::path& path, const ScanSetOptions& options, const S
   for (const Error& damage : store->opening().damage) {
     tell(damage.line(), options);
   }
+  for (const std::string& note : store->opening().notes) {
+    store->opening().damage.empty() ? log_info(note) : tell(note, options);
+  }
   const auto scans = store->scans();
   if (!scans) {
     return std::unexpected(scans.error());

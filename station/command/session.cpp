@@ -17,6 +17,7 @@
 #include "station/command/session_verbs.h"
 #include "station/command/sign_off_words.h"
 #include "station/tablet_record.h"
+#include "station/told_session.h"
 
 namespace dubsar {
 
@@ -29,12 +30,9 @@ struct SessionOptions {
 };
 
 Result<int> list(const SessionOptions& options, CommandContext& context) {
-  const Result<SessionStore> store = SessionStore::open(options.path, SessionStore::Access::kReadOnly);
+  const Result<SessionStore> store = open_told(options.path, SessionStore::Access::kReadOnly);
   if (!store) {
     return std::unexpected(store.error());
-  }
-  for (const Error& damage : store->opening().damage) {
-    log_warning(damage.line());
   }
   const auto scans = store->scans();
   if (!scans) {
@@ -125,7 +123,7 @@ struct Change {
 /// Undo, drop and restore mark scans; the poses and the mesh follow with the next register and stitch.
 template <class Apply>
 Result<int> change(const SessionOptions& options, CommandContext& context, const Apply& apply) {
-  Result<SessionStore> store = SessionStore::open(options.path);
+  Result<SessionStore> store = open_for_a_word(options.path);
   if (!store) {
     return std::unexpected(store.error());
   }
@@ -197,7 +195,7 @@ struct DescribedField {
 /// Says what tablet it is; what is not given stays as it was, and an empty text takes it away.
 Result<int> describe(const std::string& path, const std::vector<DescribedField>& given,
                      CommandContext& context) {
-  Result<SessionStore> store = SessionStore::open(path);
+  Result<SessionStore> store = open_for_a_word(path);
   if (!store) {
     return std::unexpected(store.error());
   }

@@ -11,6 +11,7 @@
 #include "station/command/option_checks.h"
 #include "station/command/session_verbs.h"
 #include "station/operator_hint.h"
+#include "station/told_session.h"
 
 namespace dubsar {
 
@@ -128,7 +129,7 @@ Result<int> hint(const HintArguments& arguments, CommandContext& context) {
     return fail(ErrorKind::kUsage, "a hint is points, or a pose, or is withdrawn", "session hint",
                 "give --points, --pose or --withdraw");
   }
-  Result<SessionStore> store = SessionStore::open(arguments.session);
+  Result<SessionStore> store = open_for_a_word(arguments.session);
   if (!store) {
     return std::unexpected(store.error());
   }
@@ -162,7 +163,7 @@ Result<int> hint(const HintArguments& arguments, CommandContext& context) {
 }
 
 Result<int> lock(const HintArguments& arguments, CommandContext& context) {
-  Result<SessionStore> store = SessionStore::open(arguments.session);
+  Result<SessionStore> store = open_for_a_word(arguments.session);
   if (!store) {
     return std::unexpected(store.error());
   }
@@ -177,7 +178,7 @@ Result<int> lock(const HintArguments& arguments, CommandContext& context) {
 }
 
 Result<int> unlock(const HintArguments& arguments, CommandContext& context) {
-  Result<SessionStore> store = SessionStore::open(arguments.session);
+  Result<SessionStore> store = open_for_a_word(arguments.session);
   if (!store) {
     return std::unexpected(store.error());
   }

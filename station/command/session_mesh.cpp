@@ -8,13 +8,14 @@
 #include "core/log.h"
 #include "station/command/session_verbs.h"
 #include "station/results.h"
+#include "station/told_session.h"
 
 namespace dubsar {
 
 namespace {
 
 Result<int> mesh(const std::string& path, CommandContext& context) {
-  const Result<SessionStore> store = SessionStore::open(path, SessionStore::Access::kReadOnly);
+  const Result<SessionStore> store = open_told(path, SessionStore::Access::kReadOnly);
   if (!store) {
     return std::unexpected(store.error());
   }

@@ -141,7 +141,8 @@ int print_session(const std::string& path, const VerifyReport& report, const Sig
   // An older sign-off that a later one stands beside is history; the latest one has to hold.
   const bool signature_good =
       signed_off.damage.empty() && (signed_off.sign_offs.empty() || signed_off.sign_offs.back().holds());
-  const int status = report.ok() && signature_good ? 0 : 1;
+  const bool whole = report.ok() && report.lost.empty();
+  const int status = whole && signature_good ? 0 : 1;
   if (as_json) {
     Json sign_offs = Json::array();
     for (const CheckedSignOff& one : signed_off.sign_offs) {
@@ -149,19 +150,18 @@ int print_session(const std::string& path, const VerifyReport& report, const Sig
     }
     Json out{{"path", path},
              {"kind", "session"},
-             {"ok", report.ok()},
+             {"ok", whole},
              {"whole", report.whole},
              {"damaged", errors_json(report.damaged)},
+             {"lost", errors_json(report.lost)},
              {"unrecorded", report.unrecorded},
              {"extra", report.extra},
              {"set_aside", report.set_aside},
              {"sign_offs", sign_offs}};
     if (mended) {
-      out["repair"] = {{"notes", mended->notes},
-                       {"restored", mended->restored},
-                       {"made_anew", mended->made_anew},
-                       {"set_aside", mended->set_aside},
-                       {"beyond", errors_json(mended->beyond)}};
+      out["repair"] = {{"notes", mended->notes},         {"records", mended->records},
+                       {"restored", mended->restored},   {"made_anew", mended->made_anew},
+                       {"set_aside", mended->set_aside}, {"beyond", errors_json(mended->beyond)}};
     }
     CommandContext::print(out);
     return status;
@@ -169,11 +169,13 @@ int print_session(const std::string& path, const VerifyReport& report, const Sig
   finish_progress();
   if (mended) {
     print_names("mended", mended->notes);
+    print_names("brought back from the copy", mended->records);
     print_names("brought back from the copy", mended->restored);
     print_names("made anew", mended->made_anew);
     print_damage("cannot be mended", mended->beyond);
   }
   print_damage("damaged", report.damaged);
+  print_damage("lost", report.lost);
   print_names("no checksum kept", report.unrecorded);
   print_names("not of this session", report.extra);
   print_names("damaged original, kept", report.set_aside);
@@ -184,7 +186,8 @@ int print_session(const std::string& path, const VerifyReport& report, const Sig
   if (status != 0) {
     print_names("whole", report.whole);
   }
-  std::printf("%zu whole, %zu damaged\n", report.whole.size(), report.damaged.size());
+  std::printf("%zu whole, %zu damaged%s\n", report.whole.size(), report.damaged.size(),
+              report.lost.empty() ? "" : ", and records are lost");
   return status;
 }
 
@@ -209,7 +212,7 @@ Result<int> verify_session(const Arguments& arguments, CommandContext& context) 
     return std::unexpected(found.error());
   }
   std::optional<Mended> mended;
-  if (arguments.repair && !found->first.ok()) {
+  if (arguments.repair && (!found->first.ok() || !found->first.lost.empty())) {
     const std::optional<fs::path> copy =
         arguments.copy.empty() ? std::nullopt : std::optional<fs::path>(arguments.copy);
     Result<Mended> done = mend_session(arguments.path, found->first, copy, context.job);
@@ -266,7 +269,7 @@ Result<int> verify(const Arguments& arguments, CommandContext& context) {
 void add_verify(CLI::App& app, Action& chosen) {
   CLI::App* verb = app.add_subcommand("verify",
                                       "Integrity of a session, a bag or a grid; status 1 when anything is "
-                                      "damaged, or its sign-off no longer holds");
+                                      "damaged or lost, or its sign-off no longer holds");
   const auto arguments = std::make_shared<Arguments>();
   verb->add_option("path", arguments->path, "a session folder, a bag or a .grid file")->required();
   CLI::Option* repair =
@@ -274,7 +277,7 @@ void add_verify(CLI::App& app, Action& chosen) {
                      "mend a session with what it has, or a bag from a copy; damaged originals are "
                      "kept aside");
   verb->add_option("--from", arguments->copy,
-                   "a copy of the session, or of the bag, to bring damaged files back from")
+                   "a copy of the session, or of the bag, to bring damaged files and lost records back from")
       ->needs(repair);
   verb->fallthrough();
   verb->callback(

@@ -293,9 +293,10 @@ TEST_F(Export, DoesNotReplaceAPackageThatHoldsMoreThanADamagedSession) {
   EXPECT_EQ(update().status, 0);
   std::ofstream(session / "session.sqlite", std::ios::trunc);
   expect_kept("missing or empty");
-  // Opened for writing it is put together from what is left: whole again, and poorer.
+  // Mended without a copy it is put together from what is left: whole again, and poorer.
   fs::remove(session / "session.backup.sqlite");
-  ASSERT_EQ(run_command({"session", "describe", session.string(), "--notes", "what is left"}).status, 0);
+  EXPECT_EQ(run_command({"session", "describe", session.string(), "--notes", "what is left"}).status, 2);
+  ASSERT_EQ(run_command({"verify", session.string(), "--repair"}).status, 1);
   expect_kept("lost of its record: scan stored");
 }
 

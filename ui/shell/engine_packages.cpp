@@ -37,8 +37,11 @@ constexpr EnginePhrase kPhrases[] = {
     {"choose another folder, or replace it with --force", "einen anderen Ordner wählen"},
     // what it holds and the session does not
     {", and the package that lies here holds it", ", und das Paket, das hier liegt, hat es noch"},
-    {"mend the session (dubsar verify --repair --from COPY), or choose another folder",
-     "die Sitzung aus einer Kopie heilen, oder einen anderen Ordner wählen"},
+    {"bring it back from a copy of the session (dubsar verify --repair --from COPY); where there is none, "
+     "choose another folder: the package that lies here keeps it",
+     "es aus einer Kopie der Sitzung zurückholen; wo es keine gibt, einen anderen Ordner wählen: das Paket, "
+     "das "
+     "hier liegt, behält es"},
     {"the session may have lost some of its record (",
      "die Sitzung hat vielleicht etwas von ihrem Verlauf verloren ("},
     {"the session has lost of its record: ", "die Sitzung hat von ihrem Verlauf verloren: "},

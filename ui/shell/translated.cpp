@@ -27,7 +27,7 @@ constexpr std::pair<std::string_view, std::string_view> kInWindow[] = {
     {"see what differs (dubsar verify), choose another folder, or replace it with --force",
      "see what differs, or choose another folder"},
     {", or replace it with --force", ""},
-    {"mend the session (dubsar verify --repair --from COPY)", "mend the session from a copy"},
+    {"a copy of the session (dubsar verify --repair --from COPY)", "a copy of the session"},
     {"run dubsar register and dubsar plan on it first", "go on and finish first"},
     {"run dubsar plan on it, read what it says, and sign again",
      "go on, finish, read what it says, and sign again"},
