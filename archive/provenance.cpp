@@ -48,6 +48,13 @@ OrderedJson time_span(const std::string& when) {
           {"crm:P82b_end_of_the_end", instant}};
 }
 
+/// Of a scan that was over when it was stored: nobody says when it began.
+OrderedJson time_span_until(const std::string& when) {
+  return {{"@type", "crm:E52_Time-Span"},
+          {"rdfs:label", "stored at this time; its device told none"},
+          {"crm:P82b_end_of_the_end", {{"@type", "xsd:dateTime"}, {"@value", when}}}};
+}
+
 OrderedJson tablet_node(const ProvenanceInput& input) {
   OrderedJson node = {{"@id", input.base_url + "tablet"},
                       {"@type", "crm:E22_Human-Made_Object"},
@@ -85,7 +92,7 @@ OrderedJson scan_node(const ProvenanceInput& input, const ProvenanceScan& scan) 
     node["crm:P14_carried_out_by"] = reference(input.base_url + "provenance/operator");
   }
   if (!scan.when.empty()) {
-    node["crm:P4_has_time-span"] = time_span(scan.when);
+    node["crm:P4_has_time-span"] = scan.stored_only ? time_span_until(scan.when) : time_span(scan.when);
   }
   if (!scan.file.empty()) {
     node["crmdig:L20_has_created"] = {{"@id", input.base_url + scan.file},
@@ -130,6 +137,24 @@ OrderedJson step_node(const ProvenanceInput& input, const ProvenanceStep& step) 
     node["crm:P43_has_dimension"] = dimensions(step.results);
   }
   return node;
+}
+
+/// The signing, and who signed: two nodes. The name is what was typed, so it is nobody else's of the graph.
+void add_signature(const ProvenanceInput& input, std::size_t number, OrderedJson& graph) {
+  const ProvenanceSignature& signature = input.signatures[number - 1];
+  const std::string id = input.base_url + "provenance/signature-" + std::to_string(number);
+  OrderedJson person = {{"@id", id + "-by"}, {"@type", "crm:E21_Person"}, {"rdfs:label", signature.name}};
+  if (!signature.role.empty()) {
+    person["crm:P3_has_note"] = signature.role;
+  }
+  graph.push_back({{"@id", id},
+                   {"@type", "crm:E7_Activity"},
+                   {"rdfs:label", "Signing of the verdict"},
+                   {"crm:P14_carried_out_by", reference(id + "-by")},
+                   {"crm:P4_has_time-span", time_span(signature.when)},
+                   {"crm:P16_used_specific_object", references(input.base_url, signature.of)},
+                   {"crm:P3_has_note", signature.note}});
+  graph.push_back(std::move(person));
 }
 
 }  // namespace
@@ -179,6 +204,9 @@ std::string provenance_jsonld(const ProvenanceInput& input) {
   }
   for (const ProvenanceStep& step : input.steps) {
     graph.push_back(step_node(input, step));
+  }
+  for (std::size_t number = 1; number <= input.signatures.size(); ++number) {
+    add_signature(input, number, graph);
   }
   return text_of({{"@context",
                    {{"crm", "http://www.cidoc-crm.org/cidoc-crm/"},

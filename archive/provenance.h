@@ -22,6 +22,16 @@ struct ProvenanceScan {
   std::string note;  ///< what became of it: "registered", or why it was taken out
   bool in_model = false;
   std::vector<ProvenanceValue> values;
+  bool stored_only = false;  ///< `when` it was stored: its device told no time
+};
+
+/// A name under the verdict.
+struct ProvenanceSignature {
+  std::string name;             ///< of the person
+  std::string role;             ///< or empty
+  std::string when;             ///< ISO 8601
+  std::string note;             ///< what was signed, and whether it holds
+  std::vector<std::string> of;  ///< files, relative to base_url
 };
 
 /// One step of computing: files made of files by a program.
@@ -52,6 +62,7 @@ struct ProvenanceInput {
   std::vector<ProvenanceValue> calibration_values;
   std::vector<ProvenanceScan> scans;
   std::vector<ProvenanceStep> steps;
+  std::vector<ProvenanceSignature> signatures{};
 };
 
 /// How every file came about, as JSON-LD with the terms of CIDOC CRM and CRMdig: the tablet, the device and

@@ -130,8 +130,9 @@ std::string header(const ReportInput& input, const std::string& kicker) {
           : counted(static_cast<long long>(mesh.positions.size()), "vertex", "vertices") + ", " +
                 counted(static_cast<long long>(mesh.faces.size()), "triangle", "triangles");
   return "<header>\n<p class=\"kicker\">" + kicker + "</p>\n<h1>" + shown_title(input.title) + "</h1>\n" +
-         tablet_list(input.tablet) + "<dl>\n" + fact("Made", input.when) + fact("Device", input.device) +
-         fact("Mesh", size) + fact("Program", input.tool_version) + "</dl>\n</header>\n";
+         tablet_list(input.tablet) + "<dl>\n" + fact("Scanned", scanned_in_words(input.entries)) +
+         fact("Made", input.when) + fact("Device", input.device) + fact("Mesh", size) +
+         fact("Program", input.tool_version) + "</dl>\n</header>\n";
 }
 
 }  // namespace

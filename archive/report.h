@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "archive/render_scene.h"
+#include "archive/scan_entries.h"
 #include "core/checklist.h"
 #include "core/job.h"
 #include "core/mesh.h"
@@ -32,9 +33,10 @@ struct ReportInput {
   const RedMap& red_map;
   const Checklist& checklist;
   const std::vector<ScanPose>& scans;
-  ColouredPoints red_points;          ///< red and excused samples in the model frame
-  RigidTransform tablet_from_model;   ///< which way the faces look; see face_camera()
-  std::string wedges;                 ///< a sentence on them; empty: nobody looked
+  std::vector<ScanEntry> entries{};  ///< of all scans, those that were taken out too; empty without a session
+  ColouredPoints red_points;         ///< red and excused samples in the model frame
+  RigidTransform tablet_from_model;  ///< which way the faces look; see face_camera()
+  std::string wedges;                ///< a sentence on them; empty: nobody looked
   std::vector<std::string> accuracy;  ///< sentences on how good the registration is and how it was measured
   std::vector<std::string> calibration;  ///< sentences beyond checklist.calibration
   std::vector<std::string> not_measured;

@@ -37,6 +37,33 @@ std::string remarks_on(const ScanPose& scan, const Checklist& checklist) {
   return out;
 }
 
+/// The file, and below it when the scan was made.
+std::string file_cell(const ReportInput& input, int id, const std::string& file) {
+  const auto entry = std::ranges::find(input.entries, id, &ScanEntry::id);
+  if (entry == input.entries.end() || entry->when.empty()) {
+    return html_escaped(file);
+  }
+  std::string when = entry->when;
+  std::ranges::replace(when, 'T', ' ');
+  std::erase(when, 'Z');
+  return html_escaped(file) + "<br><span class=\"aside\">" + (entry->by_device ? "" : "stored ") +
+         html_escaped(when) + " UTC</span>";
+}
+
+/// The scans that the operator took out, with the reason: in nothing else of the report.
+std::string taken_out_rows(const ReportInput& input) {
+  const std::string dash = "–";
+  std::string rows;
+  for (const ScanEntry& scan : input.entries) {
+    if (scan.taken_out) {
+      rows += table_row({std::to_string(scan.id), file_cell(input, scan.id, scan.file), "taken out", dash,
+                         dash, dash, dash, dash, dash, dash,
+                         scan.why.empty() ? "no reason was given" : html_escaped(scan.why)});
+    }
+  }
+  return rows;
+}
+
 const RedScan* find_counts(const RedMap& map, int id) {
   const auto found =
       std::find_if(map.scans.begin(), map.scans.end(), [&](const RedScan& scan) { return scan.id == id; });
@@ -46,7 +73,8 @@ const RedScan* find_counts(const RedMap& map, int id) {
 }  // namespace
 
 std::string scans_section(const ReportInput& input) {
-  if (input.scans.empty()) {
+  const std::string taken_out = taken_out_rows(input);
+  if (input.scans.empty() && taken_out.empty()) {
     return "<section>\n<h2>Scans</h2>\n<p>There are none.</p>\n</section>\n";
   }
   std::string rows;
@@ -56,7 +84,7 @@ std::string scans_section(const ReportInput& input) {
     const bool placed = scan.status != PoseStatus::kFailed;
     const std::string dash = "–";
     rows += table_row(
-        {std::to_string(scan.id), html_escaped(scan.file),
+        {std::to_string(scan.id), file_cell(input, scan.id, scan.file),
          std::string(to_string(scan.status)) + (scan.locked ? ", fixed by the operator" : "") +
              (first ? ", a copy of scan " + std::to_string(*first) : ""),
          placed ? micrometres(scan.rms_mm) : dash, placed ? micrometres(scan.sigma_mm) : dash,
@@ -69,12 +97,14 @@ std::string scans_section(const ReportInput& input) {
          html_table("scans",
                     {"No", "File", "Status", "rms, µm", "σ, µm", "Overlap, %", "Samples", "Red", "Cleared",
                      "Excused", "Remark"},
-                    rows) +
+                    rows + taken_out) +
          "<p class=\"aside\">rms: residual from points to the surface of the other scans over the overlap. "
          "σ: how far "
          "this scan’s surface may be off because of its pose, as predicted. Overlap: share of the smaller "
          "scan that "
-         "lies on the rest.</p>\n</section>\n";
+         "lies on the rest. Below a file: when it was scanned, as its device says, or when the session "
+         "stored "
+         "it.</p>\n</section>\n";
 }
 
 std::string accuracy_section(const ReportInput& input) {

@@ -57,10 +57,36 @@ bool is_open_to_others(const struct stat& folder) {
   return folder.st_uid != ::geteuid() || (folder.st_mode & S_IWOTH) != 0;
 }
 
+/// The top of a mounted disk, or of a part of one that is mounted elsewhere too.
+bool is_mount_point(const fs::path& folder) {
+  struct statx own {};
+  if (::statx(AT_FDCWD, folder.c_str(), AT_SYMLINK_NOFOLLOW, STATX_INO, &own) != 0) {
+    return false;
+  }
+  if ((own.stx_attributes_mask & STATX_ATTR_MOUNT_ROOT) != 0) {
+    return (own.stx_attributes & STATX_ATTR_MOUNT_ROOT) != 0;
+  }
+  struct stat here {};  // Linux before 5.8
+  struct stat above {};
+  return ::lstat(folder.c_str(), &here) == 0 && ::stat(folder.parent_path().c_str(), &above) == 0 &&
+         here.st_dev != above.st_dev;
+}
+
 }  // namespace
+
+Status check_no_disk_is_mounted_at(const fs::path& wanted) {
+  const fs::path target = resolved_place(wanted);
+  return is_mount_point(target)
+             ? fail(ErrorKind::kUsage, "this is the top of a disk, and a folder cannot take its place",
+                    target.string(), "give a folder in it, such as " + (target / "package").string())
+             : Status();
+}
 
 Result<StagedFolder> StagedFolder::begin(const fs::path& wanted, bool replace) {
   std::error_code error;
+  if (const Status place = check_no_disk_is_mounted_at(wanted); !place) {
+    return std::unexpected(place.error());
+  }
   fs::path target = resolved_place(wanted);
   if (!replace && !is_free(target)) {
     return fail(ErrorKind::kUsage, "something lies there already", target.string(),

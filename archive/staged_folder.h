@@ -8,6 +8,10 @@
 
 namespace dubsar {
 
+/// kUsage where a disk is mounted at the place itself: no folder can be put there, and what is made beside it
+/// lies on another disk. To be asked before any work.
+[[nodiscard]] Status check_no_disk_is_mounted_at(const std::filesystem::path& target);
+
 /// A folder that is made under a temporary name beside its place and put there whole, or not at all. Taken
 /// away again unless it was published.
 class StagedFolder {
@@ -15,7 +19,7 @@ class StagedFolder {
   /// Makes the temporary folder, and durably those that it lies in. What a killed program left there is
   /// removed first, the folder itself with it where it is another user's or others may write into it; kUsage
   /// while another program is at it, and where something lies at `target` already that `replace` does not let
-  /// go (an empty folder is nothing). kStorage where nothing can be made.
+  /// go (an empty folder is nothing), or a disk is mounted there. kStorage where nothing can be made.
   [[nodiscard]] static Result<StagedFolder> begin(const std::filesystem::path& target, bool replace);
 
   StagedFolder(StagedFolder&& other) noexcept;

@@ -29,9 +29,19 @@ constexpr int kPlaceDigits = 9;
 
 using Three = std::array<double, 3>;
 
+/// Spreadsheets run a cell that begins so as a formula, whoever wrote it: behind an apostrophe it is a text
+/// (OWASP, "CSV injection"). Numbers do not come here.
+std::string no_formula(std::string text) {
+  const std::size_t first = text.find_first_not_of(' ');  // before which some of them pass over blanks
+  if (first != std::string::npos && std::string_view("=+-@").contains(text[first])) {
+    text.insert(text.begin(), '\'');
+  }
+  return text;
+}
+
 /// RFC 4180, 2.6 and 2.7: what holds a comma or a quote stands in quotes, and a quote is doubled.
 std::string cell_of(const std::string& text) {
-  const std::string line = label_value(text);
+  const std::string line = no_formula(label_value(text));
   if (line.find_first_of(",\"") == std::string::npos) {
     return line;
   }

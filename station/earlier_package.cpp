@@ -20,6 +20,7 @@
 #include "formats/json_node.h"
 #include "formats/same_bytes.h"
 #include "station/package.h"
+#include "station/package_content.h"
 #include "station/package_source.h"
 
 namespace dubsar {
@@ -98,10 +99,38 @@ Status check_record(const fs::path& package, const fs::path& session) {
   return {};
 }
 
+/// What a person said in the viewer: with the session's own file gone the package may have the only one.
+Status check_by_hand(const fs::path& package, const fs::path& session) {
+  for (const auto& [own, packed] : {std::pair{kCorrectionsOfSession, kPackedCorrections},
+                                    std::pair{kSelectionsOfSession, kPackedSelections}}) {
+    std::error_code unknown;
+    if (fs::exists(package / "data" / packed, unknown) && !fs::exists(session / own, unknown)) {
+      return std::unexpected(
+          lost("the session no longer has " + std::string(own) + " as it was stored", package));
+    }
+  }
+  return {};
+}
+
 /// "Bag-Software-Agent: Dubsar 0.1.0" stands in bag-info.txt.
 bool names_dubsar(const fs::path& package) {
   const Result<std::string> info = read_whole_file(package / "bag-info.txt", kMaxBagTextBytes);
   return info && ("\n" + *info).find("\nBag-Software-Agent: Dubsar ") != std::string::npos;
+}
+
+Status check_is_whole(const fs::path& package, JobContext& job) {
+  const Result<BagReport> report = check_bag(package, job);
+  if (!report) {
+    return std::unexpected(report.error());
+  }
+  if (report->ok()) {
+    return {};
+  }
+  // A file by its name tells more than a sum of all of them.
+  const auto file = std::ranges::find_if(
+      report->damaged, [](const Error& damage) { return damage.where.starts_with("data/"); });
+  const Error& damage = file == report->damaged.end() ? report->damaged.front() : *file;
+  return std::unexpected(not_as_written(damage.where, damage.what, package));
 }
 
 }  // namespace
@@ -168,16 +197,8 @@ Result<bool> is_earlier_package(const fs::path& package, const fs::path& session
   }
   // Not by the stamp's outputs: an export that was killed at its very end leaves the stamp of the package
   // that did not come, beside the one that is still there.
-  const Result<BagReport> report = check_bag(package, job);
-  if (!report) {
-    return std::unexpected(report.error());
-  }
-  if (!report->ok()) {
-    // A file by its name tells more than a sum of all of them.
-    const auto file = std::ranges::find_if(
-        report->damaged, [](const Error& damage) { return damage.where.starts_with("data/"); });
-    const Error& damage = file == report->damaged.end() ? report->damaged.front() : *file;
-    return std::unexpected(not_as_written(damage.where, damage.what, package));
+  if (const Status whole = check_is_whole(package, job); !whole) {
+    return std::unexpected(whole.error());
   }
   // Rows of a scan that was not over are grids, too: they went when that scan was gone on with.
   const auto gone = std::ranges::find_if(known->inputs, [&](const StampedFile& file) {
@@ -187,8 +208,41 @@ Result<bool> is_earlier_package(const fs::path& package, const fs::path& session
   if (gone != known->inputs.end()) {
     return std::unexpected(lost("the session no longer has " + gone->name + " as it was stored", package));
   }
+  if (const Status by_hand = check_by_hand(package, session); !by_hand) {
+    return std::unexpected(by_hand.error());
+  }
   const Status record = check_record(package, session);
   return record ? Result<bool>(true) : std::unexpected(record.error());
+}
+
+Status check_is_not_packed(const fs::path& package, const fs::path& session, const StampedWork& now,
+                           JobContext& job) {
+  if (!is_bag(package) || !names_dubsar(package)) {
+    return {};
+  }
+  const Result<bool> earlier = is_earlier_package(package, session, now, job);
+  if (!earlier) {
+    return std::unexpected(earlier.error());
+  }
+  if (*earlier) {
+    return fail(
+        ErrorKind::kUsage,
+        "something lies there already: a package of this session, of an earlier state or made otherwise",
+        package.string(),
+        "bring it up to date with --update, choose another folder, or replace it with --force");
+  }
+  const Result<SessionStore> store = SessionStore::open(session, SessionStore::Access::kReadOnly);
+  if (!store || packed_events(package).empty() || !check_is_of_session(package, *store)) {
+    return {};  // write_package() says what there is to say
+  }
+  if (const Status whole = check_is_whole(package, job); !whole) {
+    return whole;
+  }
+  return fail(
+      ErrorKind::kUsage,
+      "something lies there already: a package of this session without the stamp that belongs to it, so "
+      "that --update cannot tell its state",
+      package.string(), "choose another folder, or replace it with --force");
 }
 
 }  // namespace dubsar

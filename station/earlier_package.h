@@ -33,4 +33,11 @@ namespace dubsar {
                                               const std::filesystem::path& session, const StampedWork& now,
                                               JobContext& job);
 
+/// For whoever did not ask to replace it: kUsage, with what lies there and what is to be done, where that is
+/// a package of this session. Errors besides: those of is_earlier_package(). Passes where it is something
+/// else, or nothing.
+[[nodiscard]] Status check_is_not_packed(const std::filesystem::path& package,
+                                         const std::filesystem::path& session, const StampedWork& now,
+                                         JobContext& job);
+
 }  // namespace dubsar

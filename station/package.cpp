@@ -37,8 +37,8 @@ void lie_as(const RigidTransform& tablet_from_model, WedgeFile* file) {
   file->profiles = make_profiles(file->wedges);
 }
 
-std::string base_url(const std::string& wanted, const std::string& stem) {
-  std::string url = wanted.empty() ? "https://dubsar.invalid/" + stem : wanted;
+std::string base_url(const std::string& wanted, const std::string& name) {
+  std::string url = wanted.empty() ? "https://dubsar.invalid/" + name : wanted;
   if (url.back() != '/') {
     url += '/';
   }
@@ -105,6 +105,7 @@ std::vector<BagField> bag_fields(const PackageContent& content) {
           {"Rights", content.tablet.rights},
           {"Bagging-Date", content.when.substr(0, 10)},
           {"Bag-Software-Agent", program_name()},
+          {"Dubsar-Signed", signature_words(content)},
           {"Dubsar-Left-Out", left_out}};
 }
 
@@ -122,6 +123,8 @@ Status add_all(PackageContent& content, StageTimes& timings) {
       {"records", add_records, true},
       {"model", add_model, true},
       {"kept files", add_kept, true},
+      {"selections and corrections", add_by_hand, true},
+      {"what is left out", add_left_out, true},
       {"wedges", add_wedges, content.has(PackagePart::kWedges)},
       {"features", add_features, content.has(PackagePart::kFeatures)},
       {"renderings", add_renderings, content.has(PackagePart::kRenderings)},
@@ -233,7 +236,7 @@ Result<Package> write_package(const fs::path& session, const fs::path& to, const
                          .facts = std::move(facts),
                          .tablet = tablet,
                          .identifier = identifier,
-                         .stem = file_stem(identifier),
+                         .stem = file_stem(identifier, session_name(store.folder())),
                          .when = utc_now(),
                          .simulated = *simulated,
                          .label = std::move(*label),
@@ -245,8 +248,10 @@ Result<Package> write_package(const fs::path& session, const fs::path& to, const
                          .files = {},
                          .pictures = {},
                          .lacking = {},
+                         .left_out = {},
                          .job = job};
-  content.options.base_url = base_url(options.base_url, content.stem);
+  const bool is_named_by_session = tablet.cdli.empty() && tablet.museum_number.empty();
+  content.options.base_url = base_url(options.base_url, address_name(identifier, is_named_by_session));
   if (content.has(PackagePart::kWedges)) {
     Result<FoundWedges> wedges = wedges_of(store, mesh, job);
     if (!wedges) {

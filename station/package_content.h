@@ -59,7 +59,8 @@ struct PackageContent {
   std::optional<PackageFields> fields;  ///< see need_fields()
   std::vector<PackagedFile> files;
   std::vector<PackagedPicture> pictures;
-  std::vector<std::string> lacking;  ///< what is not in it and why, one sentence each
+  std::vector<std::string> lacking;   ///< what is not in it and why, one sentence each
+  std::vector<std::string> left_out;  ///< what lies in the session's folder and was not wanted, likewise
   JobContext& job;
 
   [[nodiscard]] bool has(PackagePart part) const { return !options.without.contains(part); }
@@ -85,6 +86,20 @@ struct PackageContent {
 /// Where inner edges end, and what a person has corrected.
 [[nodiscard]] std::string analysis_note(const WedgeFile& wedges);
 
+/// How the verdict is signed, and whether that holds: "signed by A. Reader, 2026-01-02T03:04:05Z: conclusive;
+/// it holds", or that nobody signed.
+[[nodiscard]] std::string signature_words(const PackageContent& content);
+
+/// What a person said and selected in the viewer: in the session, and in a package.
+inline constexpr const char* kCorrectionsOfSession = "analysis/wedges.corrections.json";
+inline constexpr const char* kSelectionsOfSession = "analysis/selections.json";
+inline constexpr const char* kPackedCorrections = "wedges/corrections.json";
+inline constexpr const char* kPackedSelections = "wedges/selections.json";
+/// A file of the session that is one of the two.
+[[nodiscard]] bool is_by_hand(const std::string& name);
+/// A file of the session's that is made of its scans: in mesh/, analysis/ or export/.
+[[nodiscard]] bool is_derived(const std::string& name);
+
 // The parts, in the order of the work. Each lists what it wrote. Errors: kStorage, kCancelled, and those of
 // the stages.
 [[nodiscard]] Status add_scans(PackageContent& content);
@@ -94,6 +109,10 @@ struct PackageContent {
 [[nodiscard]] Status add_records(PackageContent& content);
 [[nodiscard]] Status add_model(PackageContent& content);
 [[nodiscard]] Status add_kept(PackageContent& content);
+/// What a person said of the wedges and selected on the model.
+[[nodiscard]] Status add_by_hand(PackageContent& content);
+/// Names what lies in the session and is not packed.
+[[nodiscard]] Status add_left_out(PackageContent& content);
 [[nodiscard]] Status add_wedges(PackageContent& content);
 [[nodiscard]] Status add_features(PackageContent& content);
 [[nodiscard]] Status add_renderings(PackageContent& content);

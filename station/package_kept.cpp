@@ -1,12 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright The Dubsar developers
-// What a session keeps of scans that it has lost since: nobody can make it anew.
+// What a session keeps of scans that it has lost since, and what lies in it without a record: nobody can make
+// it anew.
 
 #include <algorithm>
+#include <map>
 #include <set>
+#include <string>
+#include <vector>
 
 #include "core/scan_list.h"
+#include "core/utf8.h"
 #include "formats/atomic_file.h"
+#include "station/file_list.h"
 #include "station/lost_scans.h"
 #include "station/package_content.h"
 
@@ -45,54 +51,85 @@ Result<std::string> words_on(const PackageContent& content, const std::vector<St
                        lost + " could still be read";
 }
 
-}  // namespace
+/// "kept/mesh/" and the like.
+std::string kept_folder(const std::string& name) {
+  return "kept/" + fs::path(name).parent_path().generic_string() + "/";
+}
 
-Status add_kept(PackageContent& content) {
-  const Result<std::vector<StoredScan>> scans = content.store.scans();
-  if (!scans) {
-    return std::unexpected(scans.error());
+const char* kind_of(const std::string& kept_folder) {
+  return kept_folder.starts_with("kept/mesh/")       ? "the mesh, "
+         : kept_folder.starts_with("kept/analysis/") ? "the wedges of kept/mesh, "
+                                                     : "the verdict of kept/mesh with its pages, ";
+}
+
+/// False where the file cannot be read, which is told.
+Result<bool> keep(PackageContent& content, const std::string& name) {
+  const Result<std::string> bytes = read_whole_file(content.store.folder() / name);
+  if (!bytes) {
+    content.lacking.push_back("kept/" + one_line(name) + " is not here: " + bytes.error().what + ".");
+    return false;
   }
-  const std::vector<int> lost = lost_scans(*scans);
-  if (lost.empty()) {
-    return {};
+  const Result<fs::path> place = content.place("kept/" + name);
+  if (!place) {
+    return std::unexpected(place.error());
   }
-  const auto of_the_rest = stored_mesh_file(content.store, content.results().poses, content.job);
-  if (!of_the_rest) {
-    return std::unexpected(of_the_rest.error());
+  const Status written = write_file_atomically(*place, std::string_view(*bytes));
+  return written ? Result<bool>(true) : std::unexpected(written.error());
+}
+
+/// What lies in the session and has no record any more, the mesh and the signed pages maybe among it.
+Status keep_unrecorded(PackageContent& content) {
+  std::map<std::string, std::vector<std::string>> folders;  // and the files in each, by name
+  std::vector<std::string> all;
+  for (const std::string& name : content.source.found().unrecorded) {
+    if (!is_derived(name) || is_by_hand(name)) {
+      continue;
+    }
+    const Result<bool> kept = keep(content, name);
+    if (!kept) {
+      return std::unexpected(kept.error());
+    }
+    if (*kept) {
+      folders[kept_folder(name)].push_back(fs::path(name).filename().string());
+      all.push_back(name);
+    }
   }
-  if (*of_the_rest) {
-    return {};  // the session's own mesh is the package's
+  for (const auto& [folder, files] : folders) {
+    content.list(folder,
+                 file_list(files) +
+                     ": as they lie in the session, which has no record of them: no checksum was kept, so "
+                     "that nobody can tell whether they are what was stored");
   }
-  const Result<std::string> words = words_on(content, *scans, listed(lost));
+  if (!all.empty()) {
+    content.lacking.push_back(
+        "The session has no record of these files, which are in kept/ as they lie there, unchecked: " +
+        file_list(all) +
+        ". What else it once had on record, places of scans and signatures maybe among it, is not here.");
+  }
+  return {};
+}
+
+Status keep_what_was_made_of_lost(PackageContent& content, const std::vector<StoredScan>& scans,
+                                  const std::vector<int>& lost) {
+  const Result<std::string> words = words_on(content, scans, listed(lost));
   if (!words) {
     return std::unexpected(words.error());
   }
   std::set<std::string> folders;
-  for (const std::string& name : content.source.whole_files()) {
-    const std::string folder = name.substr(0, name.find('/') + 1);
-    if (folder != "mesh/" && folder != "analysis/" && folder != "export/") {
+  for (const std::string& name : content.source.found().whole) {
+    if (!is_derived(name) || is_by_hand(name)) {
       continue;
     }
-    const Result<std::string> bytes = read_whole_file(content.store.folder() / name);
-    if (!bytes) {
-      content.lacking.push_back("kept/" + name + " is not here: " + bytes.error().what + ".");
-      continue;
+    const Result<bool> kept = keep(content, name);
+    if (!kept) {
+      return std::unexpected(kept.error());
     }
-    const Result<fs::path> place = content.place("kept/" + name);
-    if (!place) {
-      return std::unexpected(place.error());
+    if (*kept) {
+      folders.insert(kept_folder(name));
     }
-    if (const Status written = write_file_atomically(*place, std::string_view(*bytes)); !written) {
-      return written;
-    }
-    folders.insert("kept/" + fs::path(name).parent_path().generic_string() + "/");
   }
   for (const std::string& folder : folders) {
-    content.list(folder,
-                 (folder.starts_with("kept/mesh/")       ? "the mesh, "
-                  : folder.starts_with("kept/analysis/") ? "the wedges of kept/mesh, "
-                                                         : "the verdict of kept/mesh with its pages, ") +
-                     *words);
+    content.list(folder, kind_of(folder) + *words);
   }
   const bool some_remain = !content.results().poses.empty();
   content.lacking.push_back(
@@ -101,6 +138,26 @@ Status add_kept(PackageContent& content) {
                    : " there is nothing that a model could be made of, and verdict and report say so") +
       (folders.empty() ? "." : "; what was made while they could be read is in kept/."));
   return {};
+}
+
+}  // namespace
+
+Status add_kept(PackageContent& content) {
+  const Result<std::vector<StoredScan>> scans = content.store.scans();
+  if (!scans) {
+    return std::unexpected(scans.error());
+  }
+  const Status unrecorded = keep_unrecorded(content);
+  const std::vector<int> lost = lost_scans(*scans);
+  if (!unrecorded || lost.empty()) {
+    return unrecorded;
+  }
+  const auto of_the_rest = stored_mesh_file(content.store, content.results().poses, content.job);
+  if (!of_the_rest) {
+    return std::unexpected(of_the_rest.error());
+  }
+  // Else the session's own mesh is the package's.
+  return *of_the_rest ? Status() : keep_what_was_made_of_lost(content, *scans, lost);
 }
 
 }  // namespace dubsar

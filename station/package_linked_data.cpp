@@ -5,7 +5,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <ctime>
 #include <filesystem>
 #include <iterator>
 #include <string_view>
@@ -23,11 +22,6 @@
 namespace dubsar {
 
 namespace {
-
-/// Empty when it is not known.
-std::string utc(std::int64_t time_ns) {
-  return time_ns > 0 ? utc_text(static_cast<std::time_t>(time_ns / 1'000'000'000)) : std::string();
-}
 
 bool is_listed(const PackageContent& content, const std::string& file) {
   return std::ranges::find(content.files, file, &PackagedFile::path) != content.files.end();
@@ -53,7 +47,11 @@ ProvenanceScan scan_of(const PackageContent& content, const StoredScan& scan) {
   const ScanPose* pose = scan.dropped || at == poses.end() ? nullptr : &*at;
   ProvenanceScan out;
   out.id = scan.id;
-  out.when = utc(scan.timestamp_ns);
+  const auto entry = std::ranges::find(content.facts.scans, scan.id, &ScanEntry::id);
+  if (entry != content.facts.scans.end()) {
+    out.when = entry->when;
+    out.stored_only = !entry->by_device;
+  }
   out.file = scan.damaged ? std::string() : fmt::format("scans/grids/{:03}.grid", scan.id);
   out.note = fate_of(scan, pose);
   out.in_model = pose != nullptr && pose->status == PoseStatus::kRegistered && !scan.damaged;
@@ -93,6 +91,8 @@ std::vector<std::string> files_of(const std::vector<std::string>& payload, std::
 void add_step(const std::vector<std::string>& payload, std::string_view folder, ProvenanceStep step,
               ProvenanceInput& input) {
   step.made = files_of(payload, folder);
+  std::erase(step.made, kPackedCorrections);  // a person's
+  std::erase(step.made, kPackedSelections);
   if (!step.made.empty()) {
     input.steps.push_back(std::move(step));
   }
@@ -150,18 +150,20 @@ void add_steps(const PackageContent& content, const std::vector<std::string>& pa
   input.steps = std::move(steps);
   std::vector<std::string> grids = files_of(payload, "scans/grids/");
   add_step(payload, "scans/ply/", {"unfolding", "The scans as ordered PLY", grids, {}, {}, {}}, input);
+  const bool corrected = std::ranges::find(payload, kPackedCorrections) != payload.end();
   if (content.wedges) {
-    add_step(payload, "wedges/",
-             {"analysis",
-              "Measurement of the wedges",
-              {model},
-              {},
-              analysis_parameters(content),
-              {{"wedges", static_cast<double>(content.wedges->wedges.size()), ""},
-               {"hollows rejected", static_cast<double>(content.wedges->rejected.size()), ""}},
-              content.wedges_are_kept ? keeper_of(content) : program_name(),
-              analysis_note(*content.wedges)},
-             input);
+    add_step(
+        payload, "wedges/",
+        {"analysis",
+         "Measurement of the wedges",
+         corrected ? std::vector<std::string>{model, kPackedCorrections} : std::vector<std::string>{model},
+         {},
+         analysis_parameters(content),
+         {{"wedges", static_cast<double>(content.wedges->wedges.size()), ""},
+          {"hollows rejected", static_cast<double>(content.wedges->rejected.size()), ""}},
+         content.wedges_are_kept ? keeper_of(content) : program_name(),
+         analysis_note(*content.wedges)},
+        input);
   }
   add_step(payload, "features/", {"features", "Values by vertex", {model}, {}, {}, {}}, input);
   add_step(payload, "pictures/", {"drawing", "Pictures drawn from the surface", {model}, {}, {}, {}}, input);
@@ -176,12 +178,32 @@ void add_steps(const PackageContent& content, const std::vector<std::string>& pa
   for (const char* folder : {"session/", "scans/unfinished/", "kept/", "iiif/annotations/"}) {
     std::ranges::copy(files_of(payload, folder), std::back_inserter(packing.made));
   }
+  for (const char* by_hand : {kPackedCorrections, kPackedSelections}) {
+    std::ranges::copy(files_of(payload, by_hand), std::back_inserter(packing.made));
+  }
   packing.made.emplace_back("scans/scans.json");
   packing.made.emplace_back("README.txt");
   if (!content.pictures.empty()) {
     packing.made.emplace_back("iiif/manifest.json");
   }
   input.steps.push_back(std::move(packing));
+}
+
+/// The latest sign-off: who, when, what was signed, and whether it holds.
+void add_signature(const PackageContent& content, ProvenanceInput& input) {
+  const auto& checked = content.results().checklist.sign_off;
+  if (!checked) {
+    return;
+  }
+  const SignOff& made = checked->sign_off;
+  ProvenanceSignature signature{made.name, made.role, made.when, signature_words(content), {}};
+  for (const char* what : {"red_map", "checklist"}) {
+    const std::string file = fmt::format("session/signed_{}_{}.json", made.number, what);
+    if (is_listed(content, file)) {
+      signature.of.push_back(file);
+    }
+  }
+  input.signatures.push_back(std::move(signature));
 }
 
 Status add_provenance(PackageContent& content) {
@@ -220,6 +242,7 @@ Status add_provenance(PackageContent& content) {
     return std::unexpected(payload.error());
   }
   add_steps(content, *payload, input);
+  add_signature(content, input);
   return content.text(
       "provenance.jsonld", provenance_jsonld(input),
       "how every file came about (but for formats/): device, calibration, every scan, every step with its "

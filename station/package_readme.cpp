@@ -6,6 +6,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <iterator>
 
 #include "station/package_content.h"
 
@@ -150,8 +151,15 @@ Status add_readme(PackageContent& content) {
                           "is sampled densely enough."
                         : "The verdict is NOT CONCLUSIVE: report/report.html says what is missing.",
              0);
+  text += folded("Signature: " + signature_words(content) + ".", 0);
+  if (const std::string out = taken_out_in_words(content.facts.scans); !out.empty()) {
+    text += folded("Taken out by the operator, and in neither model nor verdict: " + out + ".", 0);
+  }
   text += "\nTHE TABLET\n\n";
   TabletWords words = content.facts.tablet;
+  if (const std::string when = scanned_in_words(content.facts.scans); !when.empty()) {
+    words.emplace_back("Scanned", when);
+  }
   if (!content.facts.device.empty()) {
     words.emplace_back("Scanned with", content.facts.device);
   }
@@ -183,6 +191,7 @@ Status add_readme(PackageContent& content) {
   }
   text += folded(sides_sentence(content), 2);
   std::vector<std::string> lacking = content.lacking;
+  std::ranges::copy(content.left_out, std::back_inserter(lacking));
   for (const PackagePart part : content.options.without) {
     lacking.push_back(left_out_sentence(part));
   }

@@ -5,9 +5,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <iterator>
+#include <map>
 #include <optional>
+#include <string_view>
+#include <utility>
 
 #include "acquisition/told_device.h"
 #include "core/parallel.h"
@@ -22,6 +26,7 @@
 #include "station/lost_scans.h"
 #include "station/package_content.h"
 #include "station/packed_names.h"
+#include "station/session_scans.h"
 
 namespace dubsar {
 
@@ -83,7 +88,22 @@ Result<std::vector<ScanPose>> packed_poses(const PackageContent& content,
   return poses;
 }
 
-OrderedJson scan_json(const PackageContent& content, const StoredScan& scan,
+/// What a document of the session is, for people.
+std::string told_of(const std::string& name) {
+  constexpr std::string_view kBegins = "signed ";
+  constexpr std::array<std::pair<std::string_view, std::string_view>, 2> kSigned = {
+      {{" red_map", "the red map"}, {" checklist", "the checklist"}}};
+  for (const auto& [ending, what] : kSigned) {
+    if (name.starts_with(kBegins) && name.ends_with(ending) && name.size() > kBegins.size() + ending.size()) {
+      const std::string number = name.substr(kBegins.size(), name.size() - kBegins.size() - ending.size());
+      return std::string(what) + " that sign-off " + number +
+             " stands for, as it was then: formats/sign_off.txt";
+    }
+  }
+  return "the session's document \"" + name + "\", as it was kept: formats/session.txt";
+}
+
+OrderedJson scan_json(const PackageContent& content, const StoredScan& scan, const std::string& stored,
                       const std::vector<ScanPose>& poses) {
   OrderedJson json{{"id", scan.id}};
   if (!scan.damaged) {
@@ -95,6 +115,9 @@ OrderedJson scan_json(const PackageContent& content, const StoredScan& scan,
   json["source"] = scan.source;
   json["device"] = scan.device;
   json["timestamp_ns"] = scan.timestamp_ns;
+  if (!stored.empty()) {
+    json["stored"] = stored;
+  }
   json["rows"] = scan.rows;
   json["cols"] = scan.cols;
   json["samples"] = scan.samples;
@@ -198,6 +221,7 @@ Status add_scans(PackageContent& content) {
   if (!poses) {
     return std::unexpected(poses.error());
   }
+  const std::map<int, std::string> stored = stored_times(content.store);
   OrderedJson list = OrderedJson::array();
   for (std::size_t i = 0; i < scans->size(); ++i) {
     if (failed[i]) {
@@ -211,7 +235,8 @@ Status add_scans(PackageContent& content) {
               ? ""
               : " Where it lay is in scans/poses.json."));
     }
-    list.push_back(scan_json(content, scan, *poses));
+    const auto at = stored.find(scan.id);
+    list.push_back(scan_json(content, scan, at == stored.end() ? std::string() : at->second, *poses));
   }
   if (any) {
     content.list("scans/grids/", "every scan as it was measured, lossless: formats/grid.txt");
@@ -258,9 +283,7 @@ Status add_records(PackageContent& content) {
       return std::unexpected(document.error());
     }
     if (*document) {
-      if (const Status written =
-              content.text("session/" + files[k], told(name, **document),
-                           "the session's document \"" + name + "\", as it was kept: formats/session.txt");
+      if (const Status written = content.text("session/" + files[k], told(name, **document), told_of(name));
           !written) {
         return written;
       }

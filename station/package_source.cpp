@@ -53,7 +53,7 @@ Status PackageSource::take_kept(JobContext& job) {
       log_warning(damage.line());
     }
   }
-  whole_ = whole->whole;
+  found_ = *whole;
   Result<std::vector<ScanPose>> poses = standing_poses(store);
   if (!poses) {
     return std::unexpected(poses.error());
@@ -108,7 +108,11 @@ Result<PackageSource> PackageSource::open(const fs::path& session, JobContext& j
   if (source.pages_) {
     return source;
   }
-  log_info("the session's pages are not of its scans as they lie now: the verdict is worked out anew");
+  std::error_code unknown;
+  const bool has_pages = fs::exists(session / "export/report.html", unknown);
+  log_info(has_pages
+               ? "the session's pages are not of its scans as they lie now: the verdict is worked out anew"
+               : "the session keeps no pages: the verdict is worked out for the package");
   source.store_.reset();
   Result<ScanSet> set =
       load_scan_set(session, {.access = SessionStore::Access::kReadOnly, .may_be_empty = true}, job);

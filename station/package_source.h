@@ -41,8 +41,8 @@ class PackageSource {
   [[nodiscard]] const RigidTransform& tablet_from_model() const { return tablet_from_model_; }
   /// Nothing when the verdict was worked out anew: report_input() then has what they are made of.
   [[nodiscard]] const std::optional<KeptPages>& pages() const { return pages_; }
-  /// Files of the session that are as they were stored when it was opened; relative to it.
-  [[nodiscard]] const std::vector<std::string>& whole_files() const { return whole_; }
+  /// What the files of the session were when it was opened.
+  [[nodiscard]] const VerifyReport& found() const { return found_; }
   /// Only where pages() is nothing.
   [[nodiscard]] ReportInput input(const PageFacts& facts) const {
     return report_input(planned_->results, *planned_->stage, facts);
@@ -53,7 +53,7 @@ class PackageSource {
 
   std::optional<SessionStore> store_;
   Results results_;
-  std::vector<std::string> whole_;
+  VerifyReport found_;
   std::optional<KeptPages> pages_;
   std::optional<ScanSet> set_;
   std::optional<PlannedAgain> planned_;

@@ -10,6 +10,7 @@
 
 #include "acquisition/session_store.h"
 #include "analysis/wedges.h"
+#include "archive/staged_folder.h"
 #include "formats/atomic_file.h"
 #include "formats/files_below.h"
 #include "formats/json_node.h"
@@ -85,6 +86,9 @@ Result<Packing> pack_session(const PackRequest& asked, JobContext& job) {
   if (const Status outside = check_place_of_package(request.to); !outside) {
     return std::unexpected(outside.error());
   }
+  if (const Status place = check_no_disk_is_mounted_at(request.to); !place) {
+    return std::unexpected(place.error());
+  }
   std::error_code ignored;
   std::optional<StampedWork> work;
   PackageOptions options = request.package;
@@ -110,12 +114,18 @@ Result<Packing> pack_session(const PackRequest& asked, JobContext& job) {
       if (const Status started = work->start(); !started) {
         return std::unexpected(started.error());
       }
-    } else if (request.update && !options.replace) {
-      const Result<bool> earlier = is_earlier_package(request.to, request.session, *work, job);
+    } else if (!options.replace) {
+      const Result<bool> earlier =
+          request.update ? is_earlier_package(request.to, request.session, *work, job) : Result<bool>(false);
       if (!earlier) {
         return std::unexpected(earlier.error());
       }
       options.replace = *earlier;
+      if (const Status known =
+              *earlier ? Status() : check_is_not_packed(request.to, request.session, *work, job);
+          !known) {
+        return std::unexpected(known.error());
+      }
     }
   }
   bool stamped = false;

@@ -22,6 +22,7 @@
 #include "station/lost_scans.h"
 #include "station/range_camera_record.h"
 #include "station/session_name.h"
+#include "station/session_scans.h"
 #include "station/tablet_label.h"
 #include "station/tablet_record.h"
 
@@ -185,6 +186,7 @@ ReportInput report_input(const Results& results, const PlanningStage& stage, con
           .red_map = results.red_map,
           .checklist = results.checklist,
           .scans = results.poses,
+          .entries = facts.scans,
           .red_points = stage.red_points(results.mesh),
           .tablet_from_model = stage.tablet_from_model(results.mesh),
           .wedges = facts.wedges,
@@ -226,6 +228,7 @@ PageFacts page_facts_of(const SessionStore& store) {
     facts.title = tablet.museum_number;
   }
   facts.tablet = words_of(tablet);
+  facts.scans = scan_entries_of(store);
   const auto text = store.load_document(kRun);
   const Result<JsonDocument> document =
       text && *text ? JsonDocument::parse(**text, "run") : fail(ErrorKind::kBadInput, "no run");

@@ -17,11 +17,11 @@
 #include "station/command/outputs.h"
 #include "station/command/scan_set_options.h"
 #include "station/command/scan_warnings.h"
-#include "station/command/sign_off_words.h"
 #include "station/followed_word.h"
 #include "station/offline.h"
 #include "station/plan_again.h"
 #include "station/session_name.h"
+#include "station/sign_off_words.h"
 #include "station/tablet_flags.h"
 
 namespace dubsar {

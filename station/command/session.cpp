@@ -15,7 +15,7 @@
 #include "formats/sign_off_json.h"
 #include "station/command/option_checks.h"
 #include "station/command/session_verbs.h"
-#include "station/command/sign_off_words.h"
+#include "station/sign_off_words.h"
 #include "station/tablet_record.h"
 #include "station/told_session.h"
 

@@ -10,7 +10,7 @@
 #include "station/command/option_checks.h"
 #include "station/command/scan_warnings.h"
 #include "station/command/session_verbs.h"
-#include "station/command/sign_off_words.h"
+#include "station/sign_off_words.h"
 #include "station/signing.h"
 
 namespace dubsar {

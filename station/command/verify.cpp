@@ -15,8 +15,8 @@
 #include "formats/grid_file.h"
 #include "formats/sign_off_json.h"
 #include "station/command/command.h"
-#include "station/command/sign_off_words.h"
 #include "station/mending.h"
+#include "station/sign_off_words.h"
 
 namespace dubsar {
 

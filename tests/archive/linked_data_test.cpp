@@ -106,6 +106,21 @@ TEST(WedgeTable, TellsOnEveryLineWhatTheWedgesAreOf) {
   EXPECT_TRUE(wedge_table({some_wedge()}, {.name = "BM 1"}).ends_with(",BM 1,,,no\r\n"));
 }
 
+TEST(WedgeTable, HoldsNothingThatASpreadsheetRuns) {
+  const auto last_cells = [](const char* name, const char* collection, const char* rights) {
+    Wedge wedge = some_wedge();
+    wedge.depth_point_mm.x() = -1.25;  // a number stays one
+    const std::string csv =
+        wedge_table({wedge}, {.name = name, .rights = rights, .words = {{"Collection", collection}}});
+    EXPECT_NE(csv.find(",-1.25,"), std::string::npos) << csv;
+    return csv.substr(csv.rfind("no,") + 3);
+  };
+  EXPECT_EQ(last_cells("=1+1", "=HYPERLINK(\"http://x\")", "+cmd"),
+            "'=1+1,\"'=HYPERLINK(\"\"http://x\"\")\",'+cmd,no\r\n");
+  EXPECT_EQ(last_cells("-2", "@SUM(A1)", "\t=1"), "'-2,'@SUM(A1),' =1,no\r\n");
+  EXPECT_EQ(last_cells("BM 1=2", "A-B", "a@b"), "BM 1=2,A-B,a@b,no\r\n");
+}
+
 TEST(WedgeAnnotations, PointAtAClosedRingOnTheModel) {
   const auto page = nlohmann::json::parse(
       wedge_annotations({some_wedge()}, {"https://example.org/t/", "wedges/annotations.json", "model/t.ply",
@@ -250,6 +265,37 @@ TEST(Rights, GoWithPicturesAndAnnotations) {
   EXPECT_FALSE(nlohmann::json::parse(wedge_annotations({some_wedge()}, source)).contains("rights"));
   source.rights = input.rights;
   EXPECT_EQ(nlohmann::json::parse(wedge_annotations({some_wedge()}, source))["rights"], input.rights);
+}
+
+TEST(Provenance, SaysWhoSignedAndWhenScansWithoutATimeWereStored) {
+  ProvenanceInput input;
+  input.base_url = "https://example.org/t/";
+  input.program = "Dubsar";
+  input.scans = {{0, "2026-11-27T23:07:05Z", "", "registered", true, {}, true},
+                 {1, "2026-11-27T23:08:05Z", "", "registered", true, {}}};
+  input.signatures = {
+      {"A. Reader", "conservator", "2026-11-27T23:09:00Z", "it holds", {"verdict/red_map.json"}}};
+  const auto json = nlohmann::json::parse(provenance_jsonld(input));
+  const auto find = [&](const std::string& id) {
+    for (const auto& node : json["@graph"]) {
+      if (node["@id"] == input.base_url + id) {
+        return node;
+      }
+    }
+    return nlohmann::json();
+  };
+  const auto stored = find("provenance/scan-0")["crm:P4_has_time-span"];
+  EXPECT_EQ(stored["crm:P82b_end_of_the_end"]["@value"], "2026-11-27T23:07:05Z");
+  EXPECT_FALSE(stored.contains("crm:P82a_begin_of_the_begin")) << "nobody says when it began";
+  EXPECT_TRUE(find("provenance/scan-1")["crm:P4_has_time-span"].contains("crm:P82a_begin_of_the_begin"));
+  const auto signing = find("provenance/signature-1");
+  EXPECT_EQ(signing["@type"], "crm:E7_Activity");
+  EXPECT_EQ(signing["crm:P4_has_time-span"]["crm:P82b_end_of_the_end"]["@value"], "2026-11-27T23:09:00Z");
+  EXPECT_EQ(signing["crm:P16_used_specific_object"][0]["@id"], "https://example.org/t/verdict/red_map.json");
+  EXPECT_EQ(signing["crm:P3_has_note"], "it holds");
+  const auto person = find(signing["crm:P14_carried_out_by"]["@id"].get<std::string>().substr(22));
+  EXPECT_EQ(person["rdfs:label"], "A. Reader");
+  EXPECT_EQ(person["crm:P3_has_note"], "conservator");
 }
 
 TEST(Provenance, EveryFileOfAStepHasItsSource) {

@@ -285,6 +285,21 @@ TEST(PagePdf, WhatTheFontLacksIsSpeltOut) {
   EXPECT_TRUE(read.find("[U+12000] \xEF\xBF\xBD, 2026") != std::string::npos) << read << "at the foot";
 }
 
+TEST(PagePdf, PutsNoBlankWhereThePageHasNone) {
+  const PdfInfo info{"Tablet", "Dubsar", "2026-01-02T03:04:05Z"};
+  std::string html = "<p>void: <strong>the session has changed since</strong>. And <b>so</b> on.</p>";
+  html += "<p>";
+  for (int k = 0; k < 400; ++k) {  // some of them stand at the end of a line
+    html.append(static_cast<std::size_t>(1 + k % 9), 'w').append(" <strong>e</strong>. ");
+  }
+  const auto pdf = page_pdf(html + "</p>", info);
+  ASSERT_TRUE(pdf) << pdf.error().line();
+  const std::string read = read_page(*pdf, 1);
+  EXPECT_NE(read.find("changed since. And so on."), std::string::npos) << read;
+  EXPECT_EQ(read.find(" ."), std::string::npos) << read;
+  EXPECT_EQ(read.find("\n."), std::string::npos) << read << "nor is a line broken there";
+}
+
 TEST(PagePdf, HasTheBarOfThePage) {
   Image image = filled_image(40, 40, {200, 200, 200});
   image.mm_per_px = 0.5;

@@ -48,6 +48,7 @@ class Report : public ::testing::Test {
             .red_map = map_,
             .checklist = list_,
             .scans = scans_,
+            .entries = entries_,
             .red_points = {},
             .tablet_from_model = {},
             .wedges = "3 wedges <were> measured.",
@@ -76,6 +77,7 @@ class Report : public ::testing::Test {
     return n;
   }
 
+  std::vector<ScanEntry> entries_;
   std::string title_ = "BM 15285";
   TabletWords tablet_;
   std::string device_ = "sim:";
@@ -180,6 +182,35 @@ TEST_F(Report, LostScansAreNamed) {
     EXPECT_THAT(page, HasSubstr("Not every stored file is there and matches its checksum"));
     EXPECT_THAT(page, Not(HasSubstr("was checked")));
   }
+}
+
+TEST_F(Report, SaysWhenItWasScannedAndWhatWasTakenOut) {
+  const std::string silent = html();
+  EXPECT_THAT(silent, Not(HasSubstr("<dt>Scanned</dt>")));
+  EXPECT_THAT(silent, Not(HasSubstr("taken out")));
+  entries_ = {{.id = 0, .file = "scan_000.ply", .when = "2026-11-27T23:07:05Z", .by_device = true},
+              {.id = 1, .file = "scan_001.ply", .when = "2026-11-27T23:08:09Z"},
+              {.id = 2, .file = "b<a>d.ply", .when = {}, .taken_out = true, .why = "dust & hair"},
+              {.id = 3, .taken_out = true}};
+  const std::string page = html();
+  EXPECT_THAT(page, HasSubstr("<dt>Scanned</dt><dd>2026-11-27, 23:07 to 23:08 UTC, by when the session"));
+  EXPECT_THAT(page, HasSubstr("scan_000.ply<br><span class=\"aside\">2026-11-27 23:07:05 UTC</span></td>"));
+  EXPECT_THAT(page, HasSubstr("scan_001.ply<br><span class=\"aside\">stored 2026-11-27 23:08:09 UTC</span>"));
+  EXPECT_THAT(page, HasSubstr("<td>2</td><td>b&lt;a&gt;d.ply</td><td>taken out</td>"));
+  EXPECT_THAT(page, HasSubstr("<td>dust &amp; hair</td></tr>"));
+  EXPECT_THAT(page, HasSubstr("<td>no reason was given</td></tr>"));
+}
+
+TEST(ScanEntries, SayFromWhenToWhen) {
+  EXPECT_EQ(scanned_in_words({{.id = 0}}), "");
+  EXPECT_EQ(scanned_in_words({{.id = 0, .when = "2026-11-27T23:07:05Z", .by_device = true}}),
+            "2026-11-27, 23:07 UTC");
+  EXPECT_EQ(scanned_in_words({{.id = 0, .when = "2026-11-28T00:12:00Z", .by_device = true},
+                              {.id = 1, .when = "2026-11-27T23:07:05Z", .by_device = true}}),
+            "2026-11-27, 23:07 to 2026-11-28, 00:12 UTC");
+  EXPECT_EQ(taken_out_in_words(
+                {{.id = 0}, {.id = 3, .taken_out = true, .why = "dust"}, {.id = 7, .taken_out = true}}),
+            "scan 3 (dust), scan 7 (no reason was given)");
 }
 
 TEST_F(Report, SaysConclusiveOnlyWhenBothJudgesDo) {

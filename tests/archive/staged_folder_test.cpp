@@ -140,6 +140,23 @@ TEST(StagedFolder, ReplacesOnlyWhenTold) {
   EXPECT_EQ(std::distance(fs::directory_iterator(folder.path()), fs::directory_iterator()), 1);
 }
 
+TEST(StagedFolder, IsRefusedAtTheTopOfADiskBeforeAnyWork) {
+  for (const bool replace : {false, true}) {
+    const auto staged = StagedFolder::begin("/proc/", replace);
+    ASSERT_FALSE(staged);
+    EXPECT_EQ(staged.error().kind, ErrorKind::kUsage);
+    EXPECT_THAT(staged.error().line(),
+                ::testing::AllOf(::testing::HasSubstr("this is the top of a disk"),
+                                 ::testing::HasSubstr("give a folder in it, such as /proc/package")));
+  }
+  const test::TemporaryFolder folder;
+  fs::create_directory_symlink("/proc", folder.path() / "stick");
+  EXPECT_FALSE(check_no_disk_is_mounted_at(folder.path() / "stick")) << "wherever it leads";
+  EXPECT_TRUE(check_no_disk_is_mounted_at(folder.path() / "bag"));
+  fs::create_directory(folder.path() / "empty");
+  EXPECT_TRUE(check_no_disk_is_mounted_at(folder.path() / "empty"));
+}
+
 TEST(StagedFolder, ClearsWhatAKilledProgramLeft) {
   const test::TemporaryFolder folder;
   put(folder.path() / (std::string(kTemporaryPrefix) + "bag") / "half", "written");

@@ -47,6 +47,37 @@ TEST_F(Export, NeverOverwritesUnasked) {
   EXPECT_FALSE(fs::exists(at("twice") / "data" / "left.txt"));
 }
 
+TEST_F(Export, SaysWhatLiesThereAndWhatIsToBeDone) {
+  const fs::path session = at("told");
+  const fs::path bag = at("told_bag");
+  fs::copy(at("session"), session, fs::copy_options::recursive);
+  const auto again = [&] {
+    return run_command({"export", session.string(), "--to", bag.string(), "--without",
+                        "renderings,features,wedges,grid-ply"});
+  };
+  ASSERT_EQ(again().status, 0);
+  ASSERT_EQ(run_command({"session", "describe", session.string(), "--notes", "later"}).status, 0);
+  const Outcome earlier = again();
+  EXPECT_EQ(earlier.status, 2);
+  EXPECT_THAT(earlier.complaints(), SizeIs(1));
+  EXPECT_THAT(earlier.err, HasSubstr("a package of this session, of an earlier state"));
+  EXPECT_THAT(earlier.err, HasSubstr("--update"));
+  std::ofstream(bag / "data/README.txt", std::ios::app) << "x";
+  const Outcome damaged = again();
+  EXPECT_EQ(damaged.status, 2);
+  EXPECT_THAT(damaged.complaints(), SizeIs(1));
+  EXPECT_THAT(damaged.err, HasSubstr("is not what was written (data/README.txt: "));
+  fs::remove(at("told_bag.done"));
+  const Outcome both = again();
+  EXPECT_THAT(both.err, HasSubstr("is not what was written (data/README.txt: "));
+  fs::remove_all(bag);
+  ASSERT_EQ(again().status, 0);
+  fs::remove(at("told_bag.done"));
+  const Outcome unstamped = again();
+  EXPECT_EQ(unstamped.status, 2);
+  EXPECT_THAT(unstamped.err, HasSubstr("without the stamp that belongs to it"));
+}
+
 TEST_F(Export, KeepsWhatOthersPutIntoThePackageThatItReplaces) {
   const std::vector<std::string> small{"--without", "renderings,features,wedges,grid-ply"};
   std::vector<std::string> forced = small;

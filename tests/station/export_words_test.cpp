@@ -8,6 +8,8 @@
 
 #include <filesystem>
 #include <fstream>
+#include <set>
+#include <string>
 
 #include "tests/station/support/exported.h"
 
@@ -157,12 +159,17 @@ TEST_F(Export, FileNamesAreGoodOnOtherSystems) {
   const fs::path session = at("named");
   fs::copy(at("session"), session, fs::copy_options::recursive);
   int count = 0;
+  std::set<std::string> tablets;
   for (const auto& [number, stem] :
        {std::pair{"nul", "tablet_nul"}, std::pair{"COM1.a", "tablet_COM1.a"}, std::pair{"Console", "Console"},
-        std::pair{R"(VAT 12/34 + "x" ü?)", "VAT_12_34_x"}, std::pair{"𒀭", "tablet"}}) {
+        std::pair{R"(VAT 12/34 + "x" ü?)", "VAT_12_34_x"}, std::pair{"𒀭", "named"},
+        std::pair{"متحف ١٢٣", "named"}, std::pair{"متحف ١٢٤", "named"}}) {
     const fs::path bag = at("named_bag_" + std::to_string(count++));
     ASSERT_EQ(pack_described(session, bag, {"--museum-number", number}).status, 0);
     EXPECT_TRUE(fs::exists(bag / "data/model" / (std::string(stem) + ".ply"))) << number;
+    const auto graph = nlohmann::json::parse(bytes_of(bag / "data/provenance.jsonld"))["@graph"];
+    EXPECT_TRUE(tablets.insert(graph[1]["@id"]).second) << number << " has the address of another tablet";
+    EXPECT_EQ(graph[1]["@type"], "crm:E22_Human-Made_Object");
   }
 }
 

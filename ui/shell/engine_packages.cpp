@@ -9,7 +9,18 @@ namespace {
 
 constexpr EnginePhrase kPhrases[] = {
     // where it is to go
+    {": a package of this session, of an earlier state or made otherwise",
+     ": ein Paket dieser Sitzung, von einem früheren Stand oder anders gemacht"},
+    {": a package of this session without the stamp that belongs to it, so that --update cannot tell its "
+     "state",
+     ": ein Paket dieser Sitzung ohne den Stempel, der dazu gehört; von welchem Stand es ist, lässt sich "
+     "nicht sagen"},
+    {"bring it up to date with --update, choose another folder, or replace it with --force",
+     "es erneuern lassen, oder einen anderen Ordner wählen"},
     {"something lies there already", "dort liegt schon etwas"},
+    {"this is the top of a disk, and a folder cannot take its place",
+     "das ist ein ganzer Datenträger, an dessen Stelle kein Ordner treten kann"},
+    {"give a folder in it, such as ", "einen Ordner darin angeben, etwa "},
     {"a package keeps a checksum of every file in it; nothing else is written there",
      "ein Paket hat eine Prüfsumme für jede seiner Dateien; anderes wird nicht hineingeschrieben"},
     {"write it beside the package: ", "neben das Paket schreiben: "},

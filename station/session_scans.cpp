@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#include "station/session_scans.h"
+
+#include <cstdint>
+#include <ctime>
+#include <nlohmann/json.hpp>
+
+#include "formats/json_node.h"
+#include "station/results.h"
+
+namespace dubsar {
+
+namespace {
+
+constexpr const char* kScanStored = "scan stored";
+
+std::string utc_of(std::int64_t time_ns) {
+  constexpr std::int64_t kNanosecondsPerSecond = 1'000'000'000;
+  return utc_text(static_cast<std::time_t>(time_ns / kNanosecondsPerSecond));
+}
+
+}  // namespace
+
+std::map<int, std::string> stored_times(const SessionStore& store) {
+  std::map<int, std::string> times;
+  const auto events = store.events();
+  for (const SessionEvent& event : events ? *events : std::vector<SessionEvent>()) {
+    if (event.kind != kScanStored || event.time_ns <= 0 || json_depth(event.json) > kMaxJsonDepth) {
+      continue;
+    }
+    const auto what = nlohmann::json::parse(event.json, nullptr, false);
+    if (what.is_object() && what.contains("id") && what["id"].is_number_integer()) {
+      times.emplace(what["id"].get<int>(), utc_of(event.time_ns));
+    }
+  }
+  return times;
+}
+
+std::vector<ScanEntry> scan_entries_of(const SessionStore& store) {
+  std::vector<ScanEntry> entries;
+  const auto scans = store.scans();
+  const std::map<int, std::string> stored = stored_times(store);
+  for (const StoredScan& scan : scans ? *scans : std::vector<StoredScan>()) {
+    ScanEntry& entry = entries.emplace_back();
+    entry.id = scan.id;
+    entry.file = scan.source;
+    entry.taken_out = scan.dropped;
+    entry.why = scan.dropped ? scan.note : std::string();
+    entry.by_device = scan.timestamp_ns > 0;
+    if (entry.by_device) {
+      entry.when = utc_of(scan.timestamp_ns);
+    } else if (const auto at = stored.find(scan.id); at != stored.end()) {
+      entry.when = at->second;
+    }
+  }
+  return entries;
+}
+
+}  // namespace dubsar

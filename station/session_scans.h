@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "acquisition/session_store.h"
+#include "archive/scan_entries.h"
+
+namespace dubsar {
+
+/// When each scan was stored, by its id, as the session wrote it down: "2026-01-02T03:04:05Z". Without those
+/// that were taken in later, of which nobody knows when they were scanned.
+[[nodiscard]] std::map<int, std::string> stored_times(const SessionStore& store);
+
+/// All scans of the session, by id. `when` is by the device's time stamp, else by stored_times().
+[[nodiscard]] std::vector<ScanEntry> scan_entries_of(const SessionStore& store);
+
+}  // namespace dubsar
