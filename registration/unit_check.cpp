@@ -29,6 +29,9 @@ constexpr std::array<Unit, 4> kUnits{
      {0.001, " and look like micrometres", "are micrometres, that is the wrong unit",
       "give its unit: --unit um for a folder, or `obj_info unit um` in its header"}}};
 
+/// What is in a session was made millimetres of when it was stored.
+constexpr const char* kOfSession = "; a session keeps its unit: scan into a new one with that";
+
 /// One scanner keeps its spacing; what it sees of the object in one view varies.
 constexpr double kSpacingWithin = 1.3;
 constexpr double kSizeWithin = 3.0;
@@ -81,7 +84,7 @@ std::string impossible_size(const ScanSize& scan, double least_mm, double most_m
                                         : "--unit um in place of m");
   return "it would be " + short_text(scan.scale_mm, 3) + " mm across: its unit is " + times +
          (is_small ? " times larger than was said; give " : " times smaller than was said; give ") + instead +
-         " (in a file's header: `obj_info unit`)";
+         " (in a file's header: `obj_info unit`)" + kOfSession;
 }
 
 bool same_spacing(const ScanSize& a, const ScanSize& b) {
@@ -97,7 +100,7 @@ std::string other_unit(const ScanSize& scan, const ScanSize& before) {
   if (!unit) {
     unit = unit_of(by_size, kSizeWithin);
   }
-  return unit ? what + unit->looks + "; " + unit->mend
+  return unit ? what + unit->looks + "; " + unit->mend + kOfSession
               : what + "; give the right --unit, or export it in millimetres";
 }
 
@@ -109,11 +112,12 @@ std::string perhaps_other_unit(const ScanSize& scan, const ScanSize& before) {
   const double by_spacing = before.spacing_mm / scan.spacing_mm;
   const std::string what = "by its numbers it is about " + times(by_size);
   if (const auto unit = unit_of(by_spacing, kSpacingWithin); unit && near(by_size, unit->mm, kSizeWithin)) {
-    return what + ", in size and in spacing: if they " + unit->are + "; " + unit->mend;
+    return what + ", in size and in spacing: if they " + unit->are + "; " + unit->mend + kOfSession;
   }
   if (const auto unit = unit_of_others(by_spacing, kSpacingWithin);
       unit && near(by_size, 1.0 / unit->mm, kSizeWithin)) {
-    return what + ", in size and in spacing: if those of the others " + unit->are + "; " + unit->mend;
+    return what + ", in size and in spacing: if those of the others " + unit->are + "; " + unit->mend +
+           kOfSession;
   }
   return {};
 }

@@ -37,6 +37,7 @@
 #include "station/camera_watch.h"
 #include "station/drives.h"
 #include "station/intruders.h"
+#include "station/known_scans.h"
 #include "station/lock_places.h"
 #include "station/planning_stage.h"
 #include "station/scan_set.h"
@@ -126,9 +127,9 @@ struct Engine::Impl {
   std::optional<RangeSource> source;
   std::optional<Rig> rig;
   std::vector<StationScan> resumed;  ///< of an existing session
-  /// A replayed file whose scan is in the session is not stored again: name and valid samples.
-  std::map<std::string, std::set<std::int64_t>> known_files;
-  int placement_offset = 0;                  ///< a resumed session starts with a lifted tablet
+  KnownScans known_files;            ///< a replayed file whose scan is in the session is not stored again
+  bool told_unit = false;            ///< that scans are in the session in another unit
+  int placement_offset = 0;          ///< a resumed session starts with a lifted tablet
   std::map<int, Placement> drives_of_scans;  ///< of the storing thread once the pipeline runs
   bool wait_for_plan = false;                ///< the session that goes on says first whether it needs more
   bool drives = false;                       ///< automatic, and the device can be placed
@@ -263,6 +264,8 @@ struct Engine::Impl {
   void keep_half(const std::optional<Placement>& drive, std::shared_ptr<UnfinishedScan> kept);
   /// What an earlier program had of a scan as it ended becomes a scan; before the session's are read.
   void take_up_left_scans();
+  /// Of the pins that the run was given, where they cannot be in that scan.
+  void tell_misplaced_pins(const StationScan& scan) const;
   Status store_left_rows(const RangeGrid& rows, const LeftScan& left);
   /// Whether one of that many scans, those that were stored last, has these rows.
   [[nodiscard]] bool is_among_newest(const RangeGrid& rows, std::size_t count) const;

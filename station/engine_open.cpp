@@ -5,6 +5,7 @@
 #include "formats/grid_header.h"
 #include "station/calibration_record.h"
 #include "station/engine_impl.h"
+#include "station/pin_faults.h"
 #include "station/range_camera_record.h"
 #include "station/told_session.h"
 
@@ -33,12 +34,13 @@ Status Engine::Impl::load_resumed(JobContext& job) {
   if (!stored) {
     return std::unexpected(stored.error());
   }
+  const bool is_of_files = source->capabilities().finite;
   for (const StoredScan& scan : *stored) {
-    // One that stands and is damaged is taken again from its file.
-    if (!scan.source.empty() && source->capabilities().finite && (scan.dropped || !scan.damaged)) {
-      known_files[scan.source].insert(scan.samples);
-    }
     if (scan.dropped || scan.damaged) {
+      // One that stands and is damaged is taken again from its file.
+      if (is_of_files && scan.dropped) {
+        known_files.add(scan, nullptr);
+      }
       placement_offset = std::max(placement_offset, placement_of(*store, scan) + 1);
       continue;
     }
@@ -48,10 +50,14 @@ Status Engine::Impl::load_resumed(JobContext& job) {
       emit(Notice{grid.error().line()});
       continue;
     }
+    if (is_of_files) {
+      known_files.add(scan, &*grid);
+    }
     if (grid->nominal) {
       placement_offset = std::max(placement_offset, grid->nominal->placement + 1);
     }
     resumed.push_back(prepare_scan(scan.id, std::move(*grid), pins));
+    tell_misplaced_pins(resumed.back());
     if (const auto drive = drives_of_scans.find(scan.id); drive != drives_of_scans.end()) {
       resumed.back().drive = drive->second;
     }
@@ -65,6 +71,13 @@ Status Engine::Impl::load_resumed(JobContext& job) {
   });
   stored_count = static_cast<int>(resumed.size());
   return {};
+}
+
+void Engine::Impl::tell_misplaced_pins(const StationScan& scan) const {
+  if (const auto fault =
+          options.pins ? misplaced_tips(*options.pins, scan.id, *scan.measured, scan.file) : std::nullopt) {
+    emit(Notice{fault->line()});
+  }
 }
 
 bool Engine::Impl::is_among_newest(const RangeGrid& rows, std::size_t count) const {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright The Dubsar developers
+#include "core/number_text.h"
 #include "station/engine_impl.h"
 #include "station/followed_word.h"
 
@@ -29,20 +30,31 @@ void Engine::Impl::keep_half(const std::optional<Placement>& drive, std::shared_
   hand_to_store({std::move(*half), std::nullopt, drive, std::move(kept), remark_of(source->record())});
 }
 
-/// A file of the same name that holds another scan is said, and left out: a name tells a scan from others.
+/// Another scan of a name that is there is stored and said: what was measured is not dropped for its name.
 bool Engine::Impl::is_known(const RangeGrid& grid) {
-  const auto known = grid.source.empty() ? known_files.end() : known_files.find(grid.source);
-  if (known == known_files.end()) {
+  if (grid.valid_count() == 0) {
     return false;
   }
-  if (!known->second.contains(static_cast<std::int64_t>(grid.valid_count()))) {
-    Error other{ErrorKind::kBadInput, "the session has another scan of this name: this one is left out",
-                grid.source, "give the file another name, then give the same command again"};
+  const KnownAs known = known_files.find(grid, [this](int id) { return store->load_grid(id); });
+  if (known.kind == KnownAs::Kind::kNamesake) {
+    emit(Notice{Error{ErrorKind::kBadInput,
+                      "the session has another scan of this name: this is stored as one more", grid.source,
+                      "take the other one out if this is to take its place"}
+                    .line()});
+  }
+  if (known.kind == KnownAs::Kind::kOtherUnit && !std::exchange(told_unit, true)) {
+    const bool is_smaller = known.smaller_by >= 1;
+    Error other{ErrorKind::kBadInput,
+                "the session has this scan in another unit, " +
+                    short_text(is_smaller ? known.smaller_by : 1 / known.smaller_by) +
+                    (is_smaller ? " times smaller: it is left out, and so are all others of which that holds"
+                                : " times larger: it is left out, and so are all others of which that holds"),
+                grid.source, "begin a new session in the right unit, or take those scans out of this one"};
     emit(Notice{other.line()});
     const std::scoped_lock lock(mutex);
     device_error = device_error ? device_error : std::move(other);
   }
-  return true;
+  return known.kind == KnownAs::Kind::kSame || known.kind == KnownAs::Kind::kOtherUnit;
 }
 
 bool Engine::Impl::hand_to_store(RawScan scan) {
@@ -234,6 +246,7 @@ void Engine::Impl::keep_stored() {
     const std::optional<RangeGrid> as_it_came = filled_in ? std::optional(raw->grid) : std::nullopt;
     StationScan scan = prepare_scan(*id, std::move(raw->grid), pins_now, std::move(raw->flags));
     scan.drive = raw->drive;
+    tell_misplaced_pins(scan);
     std::promise<bool> outcome;
     scan.stored = outcome.get_future().share();
     // Where registration is behind, the disk does not wait for it.

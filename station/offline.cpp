@@ -13,7 +13,9 @@
 #include "formats/poses_conf.h"
 #include "formats/poses_json.h"
 #include "registration/registrar.h"
+#include "station/conf_unit.h"
 #include "station/lock_places.h"
+#include "station/poses_scale.h"
 #include "triangulation/placed_precision.h"
 
 namespace dubsar {
@@ -199,9 +201,11 @@ const ScanPose* pose_in_file(const std::vector<ScanPose>& file, const StationSca
     found = the_one(
         [&](const ScanPose& pose) { return !pose.file.empty() && name_of(pose.file) == name_of(scan.file); });
   }
-  return found != nullptr
-             ? found
-             : the_one([&](const ScanPose& pose) { return pose.file.empty() && pose.id == scan.id; });
+  return found != nullptr ? found : the_one([&](const ScanPose& pose) {
+    // A session may have two scans of one name, and keeps their numbers.
+    const bool is_named = scan.read_from.empty() && name_of(pose.file) == name_of(scan.file);
+    return pose.id == scan.id && (pose.file.empty() || is_named);
+  });
 }
 
 std::unexpected<Error> no_pose_of_these(const std::filesystem::path& poses_file) {
@@ -209,16 +213,47 @@ std::unexpected<Error> no_pose_of_these(const std::filesystem::path& poses_file)
                    "its `file` or `id` must name the scans");
 }
 
+namespace {
+
+Result<std::vector<ScanPose>> read_either(const std::filesystem::path& poses_file, const std::string& unit,
+                                          const std::filesystem::path& scans) {
+  if (!is_conf(poses_file)) {
+    return read_poses(poses_file);
+  }
+  Result<std::vector<ScanPose>> poses = read_conf_poses(poses_file, mm_per_unit(unit).value_or(1.0));
+  if (!poses || !unit.empty()) {
+    return poses;
+  }
+  const Result<double> theirs = mm_per_unit_of_scans(scans, *poses);
+  return theirs ? read_conf_poses(poses_file, *theirs) : std::unexpected(theirs.error());
+}
+
+/// As who stitches them is told.
+void warn_of_scale(const ScanSet& set, const std::vector<ScanPose>& poses,
+                   const std::filesystem::path& poses_file) {
+  PosesScale scale;
+  for (const StationScan& scan : set.scans) {
+    if (const ScanPose* pose = pose_of(poses, scan.id);
+        pose != nullptr && pose->status == PoseStatus::kRegistered) {
+      scale.add(*scan.grid, pose->model_from_scanner);
+    }
+  }
+  if (const std::string fault = scale.fault(); !fault.empty()) {
+    log_warning(poses_file.string() + ": " + fault);
+  }
+}
+
+}  // namespace
+
 Result<std::vector<ScanPose>> read_poses_file(const std::filesystem::path& poses_file,
-                                              const std::string& unit) {
-  Result<std::vector<ScanPose>> poses = poses_file.extension() == ".conf"
-                                            ? read_conf_poses(poses_file, mm_per_unit(unit).value_or(1.0))
-                                            : read_poses(poses_file);
-  std::set<std::string> names;
+                                              const std::string& unit, const std::filesystem::path& scans) {
+  Result<std::vector<ScanPose>> poses = read_either(poses_file, unit, scans);
+  const bool of_session = scans.empty() || SessionStore::is_session(scans);
+  std::set<std::pair<std::string, int>> names;
   for (const ScanPose& pose : poses ? *poses : std::vector<ScanPose>{}) {
     const std::string name = pose.file.empty() ? "scan " + std::to_string(pose.id) : name_of(pose.file);
-    // Those of a package are told apart by their files there.
-    if (!names.insert(name).second && pose.packed_as.empty()) {
+    // Those of a package are told apart by their files there, those of a session by their numbers.
+    if (!names.insert({name, of_session ? pose.id : -1}).second && pose.packed_as.empty()) {
       return bad_input(poses_file.string(), "it has two poses of " + name, "leave the right one");
     }
   }
@@ -227,7 +262,9 @@ Result<std::vector<ScanPose>> read_poses_file(const std::filesystem::path& poses
 
 Result<std::vector<ScanPose>> poses_from_file(const ScanSet& set, const std::filesystem::path& poses_file,
                                               const std::string& unit) {
-  const Result<std::vector<ScanPose>> read = read_poses_file(poses_file, unit);
+  const std::filesystem::path of =
+      set.scans.empty() ? std::filesystem::path() : set.scans.front().read_from.parent_path();
+  const Result<std::vector<ScanPose>> read = read_poses_file(poses_file, unit, of);
   if (!read) {
     return std::unexpected(read.error());
   }
@@ -251,6 +288,7 @@ Result<std::vector<ScanPose>> poses_from_file(const ScanSet& set, const std::fil
   if (poses.empty()) {
     return no_pose_of_these(poses_file);
   }
+  warn_of_scale(set, poses, poses_file);
   return poses;
 }
 

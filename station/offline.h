@@ -31,17 +31,22 @@ struct RegisterOptions {
                                                            JobContext& job);
 
 /// The one of a file's poses that is a scan's, or none: by where the scan lies in the package that the poses
-/// are of, else by the scan's original name where no other has that, else by id where the pose has no name.
+/// are of, else by the scan's original name where no other has that, else by id where the pose has no name
+/// or, of a scan of a session, that name.
 [[nodiscard]] const ScanPose* pose_in_file(const std::vector<ScanPose>& file, const StationScan& scan);
 
 [[nodiscard]] std::unexpected<Error> no_pose_of_these(const std::filesystem::path& poses_file);
 
-/// poses.json, or a Stanford .conf, which says no unit: its scans' (see ScanSetOptions).
+/// poses.json, or a Stanford .conf, which says no unit: it is `unit`, where that is empty the one that its
+/// scans in `scans`, a folder or file of them, state as theirs. kBadInput also where these differ, and where
+/// two poses have one name, with one number if the scans are a session's (`scans` is that, or empty).
 [[nodiscard]] Result<std::vector<ScanPose>> read_poses_file(const std::filesystem::path& poses_file,
-                                                            const std::string& unit);
+                                                            const std::string& unit,
+                                                            const std::filesystem::path& scans);
 
-/// The poses of a file for scans of the set (matched by the scans' file names, else by id). kBadInput when it
-/// has none, or puts a registered scan too far from the origin for float.
+/// The poses of a file for scans of the set (matched by the scans' file names, else by id); lengths in
+/// another unit than the scans' are told. kBadInput when it has none, or puts a registered scan too far from
+/// the origin for float.
 [[nodiscard]] Result<std::vector<ScanPose>> poses_from_file(const ScanSet& set,
                                                             const std::filesystem::path& poses_file,
                                                             const std::string& unit);

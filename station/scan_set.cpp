@@ -3,6 +3,7 @@
 #include "station/scan_set.h"
 
 #include <algorithm>
+#include <iterator>
 #include <map>
 #include <utility>
 
@@ -14,6 +15,7 @@
 #include "formats/pins_json.h"
 #include "formats/rig_json.h"
 #include "station/drives.h"
+#include "station/pin_faults.h"
 #include "station/session_pins.h"
 
 namespace dubsar {
@@ -28,8 +30,13 @@ void tell(const std::string& what, const ScanSetOptions& options) {
   }
 }
 
-/// Keeps a scan in the set, or hands it on.
-Status keep(StationScan scan, const ScanVisitor& visit, ScanSet& set) {
+/// Keeps a scan in the set, or hands it on. Pins of a file are looked at: nobody has seen them on the scan.
+Status keep(StationScan scan, const ScanSetOptions& options, const ScanVisitor& visit, ScanSet& set) {
+  if (!options.pins_file.empty() && !options.again) {
+    if (const auto fault = misplaced_tips(*set.pins, scan.id, *scan.measured, scan.file)) {
+      tell(fault->line(), options);
+    }
+  }
   if (!visit) {
     set.scans.push_back(std::move(scan));
     return {};
@@ -113,7 +120,7 @@ Status load_session(const fs::path& path, const ScanSetOptions& options, const S
     if (const auto drive = drives.find(scan.id); drive != drives.end()) {
       prepared.drive = drive->second;
     }
-    if (const Status kept = keep(std::move(prepared), visit, set); !kept) {
+    if (const Status kept = keep(std::move(prepared), options, visit, set); !kept) {
       return kept;
     }
   }
@@ -161,7 +168,7 @@ Status load_folder(const fs::path& path, const ScanSetOptions& options, const Sc
       return fail(ErrorKind::kUsage, "a scan would be written over", options.output.string(),
                   "give the output a name of its own");
     }
-    if (const Status kept = keep(std::move(prepared), visit, set); !kept) {
+    if (const Status kept = keep(std::move(prepared), options, visit, set); !kept) {
       return kept;
     }
   }
@@ -171,6 +178,24 @@ Status load_folder(const fs::path& path, const ScanSetOptions& options, const Sc
     }
   }
   job.progress("reading scans", 1.0);
+  return {};
+}
+
+/// Scans that were taken out, or cannot be read, are there.
+Status tell_tips_of_no_scan(const ScanSet& set, const ScanSetOptions& options) {
+  std::vector<int> ids;
+  if (set.store) {
+    const auto stored = set.store->scans();
+    if (!stored) {
+      return std::unexpected(stored.error());
+    }
+    std::ranges::transform(*stored, std::back_inserter(ids), &StoredScan::id);
+  } else {
+    std::ranges::transform(set.scans, std::back_inserter(ids), &StationScan::id);
+  }
+  if (const auto fault = tips_of_no_scan(*set.pins, ids, options.pins_file.string())) {
+    tell(fault->line(), options);
+  }
   return {};
 }
 
@@ -216,6 +241,9 @@ Result<ScanSet> visit_scan_set(const fs::path& path, const ScanSetOptions& optio
     return set.left_out.empty()
                ? bad_input(path.string(), "no scan in it", "give a session or a folder of range grids")
                : std::unexpected(set.left_out.front());
+  }
+  if (const Status told = options.pins_file.empty() ? Status() : tell_tips_of_no_scan(set, options); !told) {
+    return std::unexpected(told.error());
   }
   return set;
 }

@@ -2,6 +2,7 @@
 // Copyright The Dubsar developers
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
@@ -14,6 +15,7 @@
 #include "formats/red_map_json.h"
 #include "formats/states_ply.h"
 #include "station/command/command.h"
+#include "station/command/left_out_scans.h"
 #include "station/command/outputs.h"
 #include "station/command/scan_set_options.h"
 #include "station/command/scan_warnings.h"
@@ -164,7 +166,35 @@ void print_map(const RedMap& map) {
   }
 }
 
+/// Scans that take no part in the verdict: those that are not registered, told of here, and what cannot be
+/// read, of which reading has told.
+Result<std::vector<LeftOutScan>> leave_out(const ScanSet& set, const std::vector<ScanPose>& poses) {
+  std::vector<LeftOutScan> out;
+  for (const StationScan& scan : set.scans) {
+    const auto pose = std::ranges::find(poses, scan.id, &ScanPose::id);
+    if (pose == poses.end()) {
+      out.push_back({scan.id, scan.file, LeftOutScan::Why::kNoPose, "the file of poses has none of it"});
+    } else if (pose->status != PoseStatus::kRegistered) {
+      ScanPose named = *pose;
+      named.file = scan.file;
+      out.push_back(left_out(named));
+      warn_of(out.back());
+    }
+  }
+  if (std::ranges::find(poses, PoseStatus::kRegistered, &ScanPose::status) == poses.end()) {
+    log_warning("no scan is registered: there is nothing to judge; see dubsar register");
+  }
+  Result<std::vector<LeftOutScan>> unread = unread_scans(set);
+  if (unread) {
+    unread->insert(unread->begin(), out.begin(), out.end());
+  }
+  return unread;
+}
+
 Result<int> plan(const PlanArguments& arguments, CommandContext& context) {
+  if (const Status good = arguments.set.check_unit(arguments.set.poses); !good) {
+    return std::unexpected(good.error());
+  }
   const ScanSetOptions how = arguments.set.reading();
   const bool may_write = how.access == SessionStore::Access::kReadWrite;
   Result<ScanSet> set = load_scan_set(arguments.set.path, how, context.job);
@@ -175,6 +205,10 @@ Result<int> plan(const PlanArguments& arguments, CommandContext& context) {
       poses_for(*set, arguments.set.poses, arguments.set.unit, context.job);
   if (!poses) {
     return std::unexpected(poses.error());
+  }
+  const Result<std::vector<LeftOutScan>> left_out = leave_out(*set, *poses);
+  if (!left_out) {
+    return std::unexpected(left_out.error());
   }
   const Result<PlannedAgain> planned = plan_again(*set, *poses, context.job);
   if (!planned) {
@@ -221,6 +255,7 @@ Result<int> plan(const PlanArguments& arguments, CommandContext& context) {
   finish_progress();
   if (context.json) {
     auto json = nlohmann::ordered_json::parse(red_map_to_json(results.red_map));
+    json["left_out"] = left_out_json(*left_out);
     json["checklist"] = checklist_json(results.checklist);
     // It was checked just now: the same session gives the same bytes.
     json["checklist"].erase("store_checked");

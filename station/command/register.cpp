@@ -48,6 +48,9 @@ Result<int> register_all(const RegisterArguments& arguments, CommandContext& con
   if (arguments.threads > 0) {
     limit.emplace(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(arguments.threads));
   }
+  if (const Status good = arguments.check_unit(arguments.from_poses); !good) {
+    return std::unexpected(good.error());
+  }
   Result<ScanSet> set = load_scan_set(arguments.path, arguments.options(), context.job);
   if (!set) {
     return std::unexpected(set.error());

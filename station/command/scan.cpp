@@ -8,11 +8,17 @@
 #include <cstdio>
 #include <memory>
 #include <mutex>
+#include <numeric>
+#include <optional>
 #include <set>
 #include <string>
+#include <utility>
+#include <vector>
 
+#include "acquisition/device_uri.h"
 #include "archive/html.h"
 #include "core/log.h"
+#include "core/units.h"
 #include "formats/pins_json.h"
 #include "formats/poses_json.h"
 #include "formats/red_map_json.h"
@@ -23,6 +29,7 @@
 #include "station/command/size_option.h"
 #include "station/command/terminal.h"
 #include "station/engine.h"
+#include "station/pin_faults.h"
 
 namespace dubsar {
 
@@ -30,6 +37,7 @@ namespace {
 
 struct ScanArguments {
   std::string device;
+  std::string unit;  ///< of files, where the device's URI does not say it
   std::string session;
   std::string pins;
   std::string rig;
@@ -151,9 +159,46 @@ void print_result(const EngineResult& result) {
   }
 }
 
+/// The device with `?unit=`.
+Result<std::string> device_in(const std::string& device, const std::string& unit) {
+  Result<DeviceUri> uri = parse_device_uri(device);
+  if (unit.empty() || !uri) {
+    return uri ? Result<std::string>(device) : std::unexpected(uri.error());
+  }
+  if (uri->scheme != "replay") {
+    return fail(ErrorKind::kUsage, "--unit is of files: " + uri->scheme + ": gives millimetres", device,
+                "leave it out");
+  }
+  const auto said = std::ranges::find(uri->options, "unit", [](const auto& option) { return option.first; });
+  if (said == uri->options.end()) {
+    uri->options.emplace_back("unit", unit);
+  } else if (said->second != unit) {
+    return fail(ErrorKind::kUsage, "--unit " + unit + " contradicts unit=" + said->second, device,
+                "say one of them");
+  }
+  return uri->text();
+}
+
+/// Of scans that are not there yet; of those that were taken out there is nothing to say.
+void warn_of_tips(const PinSet& pins, const std::vector<ScanPose>& poses, const std::string& file) {
+  int count = 0;
+  for (const ScanPose& pose : poses) {
+    count = std::max(count, pose.id + 1);
+  }
+  std::vector<int> ids(static_cast<std::size_t>(count));
+  std::iota(ids.begin(), ids.end(), 0);
+  if (const auto fault = tips_of_no_scan(pins, ids, file)) {
+    log_warning(fault->line());
+  }
+}
+
 Result<int> scan(const ScanArguments& arguments, CommandContext& context) {
   EngineOptions options;
-  options.device = arguments.device;
+  Result<std::string> device = device_in(arguments.device, arguments.unit);
+  if (!device) {
+    return std::unexpected(device.error());
+  }
+  options.device = std::move(*device);
   options.session = arguments.session;
   options.automatic = arguments.automatic;
   options.max_scans = arguments.max_scans;
@@ -188,6 +233,7 @@ Result<int> scan(const ScanArguments& arguments, CommandContext& context) {
     }
     options.size_mm = *size;
   }
+  const std::optional<PinSet> pins = options.pins;
   show_progress(false);
   outlive_readers();
   Narrator narrator;
@@ -203,6 +249,9 @@ Result<int> scan(const ScanArguments& arguments, CommandContext& context) {
     return exit_status(result.error().kind);
   }
   log_scan_warnings(result->checklist.warnings);
+  if (pins) {
+    warn_of_tips(*pins, result->poses, arguments.pins);
+  }
   if (context.json) {
     CommandContext::print(result_json(arguments, *result));
   } else {
@@ -225,6 +274,10 @@ void add_scan(CLI::App& app, Action& chosen) {
   verb->add_option("--device", arguments->device,
                    "URI of the device: sim:, replay:PATH, … (see dubsar drivers)")
       ->required();
+  verb->add_option("--unit", arguments->unit,
+                   "what the numbers in the files of replay: are, as ?unit= there; default: each file's own "
+                   "word, else mm")
+      ->check(CLI::IsMember(std::vector<std::string>(kLengthUnits.begin(), kLengthUnits.end())));
   verb->add_option("--session", arguments->session, "folder of the session; gone on with when it is there")
       ->default_val("session");
   verb->add_option("--pins", arguments->pins, "the operator's pins (pins.json)");

@@ -29,6 +29,7 @@
 #include "station/mesh_json.h"
 #include "station/offline.h"
 #include "station/outward_faces.h"
+#include "station/poses_scale.h"
 #include "station/tablet_flags.h"
 #include "station/tablet_label.h"
 #include "triangulation/mesh_check.h"
@@ -128,9 +129,12 @@ Status leave_out_foreign(const ScanSetArguments& arguments, const Taken& taken, 
 /// two grids are in memory.
 Result<Taken> take_scan_by_scan(const ScanSetArguments& arguments, Stitcher& stitcher,
                                 CommandContext& context) {
+  if (const Status good = arguments.check_unit(arguments.poses); !good) {
+    return std::unexpected(good.error());
+  }
   std::optional<std::vector<ScanPose>> file;
   if (!arguments.poses.empty()) {
-    Result<std::vector<ScanPose>> read = read_poses_file(arguments.poses, arguments.unit);
+    Result<std::vector<ScanPose>> read = read_poses_file(arguments.poses, arguments.unit, arguments.path);
     if (!read) {
       return std::unexpected(read.error());
     }
@@ -139,6 +143,7 @@ Result<Taken> take_scan_by_scan(const ScanSetArguments& arguments, Stitcher& sti
   Taken taken;
   std::size_t with_pose = 0;
   ForeignMatter matter;
+  PosesScale scale;
   std::future<Status> adding;
   const auto take = [&](const ScanSet& set, StationScan scan) -> Status {
     const auto stored = std::ranges::find(set.poses, scan.id, &ScanPose::id);
@@ -165,6 +170,9 @@ Result<Taken> take_scan_by_scan(const ScanSetArguments& arguments, Stitcher& sti
     }
     ++taken.scans;
     taken.names[scan.id] = scan.file;
+    if (file) {
+      scale.add(*scan.grid, pose->model_from_scanner);
+    }
     const Status before = adding.valid() ? adding.get() : Status{};
     taken.poses.push_back(*pose);
     taken.poses.back().id = scan.id;
@@ -182,6 +190,9 @@ Result<Taken> take_scan_by_scan(const ScanSetArguments& arguments, Stitcher& sti
   }
   if (!last) {
     return std::unexpected(last.error());
+  }
+  if (const std::string fault = scale.fault(); !fault.empty()) {
+    log_warning(arguments.poses + ": " + fault);
   }
   if (file && with_pose == 0) {
     return no_pose_of_these(arguments.poses);

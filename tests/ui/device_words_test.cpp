@@ -113,17 +113,45 @@ TEST(DeviceWords, OtherUnitsAreSaidInGermanAndWithoutCommands) {
   EXPECT_EQ(translated(other_unit(metres, before), Language::kGerman),
             "nach seinen Zahlen ist er 1000-mal kleiner als die Scans davor: sie sind in einer anderen "
             "Einheit und sehen nach Metern aus; seine Einheit angeben: ?unit=m hinter dem Ordner, oder "
-            "`obj_info unit m` in seinem Kopf");
+            "`obj_info unit m` in seinem Kopf; eine Sitzung behält ihre Einheit: damit in eine neue scannen");
   EXPECT_EQ(translated(other_unit(metres, before), Language::kEnglish),
             "by its numbers it is 1000 times smaller than the scans before it: they are in another unit and "
-            "look like metres; give its unit: ?unit=m behind the folder, or `obj_info unit m` in its header");
+            "look like metres; give its unit: ?unit=m behind the folder, or `obj_info unit m` in its "
+            "header; a session keeps its unit: scan into a new one with that");
   EXPECT_EQ(translated(impossible_size({.scale_mm = 0.0525, .spacing_mm = 0}, 2, 2000), Language::kGerman),
             "er wäre 0,0525 mm groß: seine Einheit ist 1000-mal größer als angegeben; richtig wäre ?unit=m "
-            "(Meter) statt mm, oder ?unit=mm statt um (im Kopf einer Datei: `obj_info unit`)");
+            "(Meter) statt mm, oder ?unit=mm statt um (im Kopf einer Datei: `obj_info unit`); eine "
+            "Sitzung behält ihre Einheit: damit in eine neue scannen");
   EXPECT_EQ(translated(perhaps_other_unit(metres, before), Language::kGerman),
             "nach seinen Zahlen ist er ungefähr 1000-mal kleiner als die Scans davor, an Größe und Abstand: "
             "wenn sie Meter sind, ist das die falsche Einheit; seine Einheit angeben: ?unit=m hinter dem "
-            "Ordner, oder `obj_info unit m` in seinem Kopf");
+            "Ordner, oder `obj_info unit m` in seinem Kopf; eine Sitzung behält ihre Einheit: damit in eine "
+            "neue scannen");
+}
+
+TEST(DeviceWords, WhatASessionHasAlreadyIsSaidInGerman) {
+  const auto german = [](const char* what, const char* mend) {
+    return translated(Error{ErrorKind::kBadInput, what, "scan_1.ply", mend}, Language::kGerman);
+  };
+  EXPECT_EQ(
+      german("the session has this scan in another unit, 1000 times smaller: it is left out, and so are "
+             "all others of which that holds",
+             "begin a new session in the right unit, or take those scans out of this one"),
+      "scan_1.ply: die Sitzung hat diesen Scan in einer anderen Einheit, 1000-mal kleiner: er bleibt weg, "
+      "wie alle anderen, für die das gilt; eine neue Sitzung in der richtigen Einheit beginnen, oder jene "
+      "Scans aus dieser entfernen");
+  EXPECT_EQ(german("the session has another scan of this name: this is stored as one more",
+                   "take the other one out if this is to take its place"),
+            "scan_1.ply: die Sitzung hat einen anderen Scan dieses Namens: dieser kommt dazu; den anderen "
+            "entfernen, falls dieser an seine Stelle tritt");
+  const char* mend = "give them in the frame of that scan, in millimetres";
+  EXPECT_EQ(
+      german("its pins cannot be right: 3 of them lie farther outside of it than it is large", mend),
+      "scan_1.ply: seine Nadeln können nicht stimmen: 3 davon liegen weiter außerhalb, als er groß ist; sie "
+      "im Koordinatensystem dieses Scans angeben, in Millimetern");
+  EXPECT_EQ(german("its pins cannot be right: none of them lies within 4 mm of its samples", mend),
+            "scan_1.ply: seine Nadeln können nicht stimmen: keine davon liegt näher als 4 mm an seinen "
+            "Messpunkten; sie im Koordinatensystem dieses Scans angeben, in Millimetern");
 }
 
 }  // namespace

@@ -76,6 +76,8 @@ constexpr EnginePhrase kRemarks[] = {
      "seine Einheit angeben: ?unit=cm hinter dem Ordner, oder `obj_info unit cm` in seinem Kopf"},
     {"give its unit: --unit um for a folder, or `obj_info unit um` in its header",
      "seine Einheit angeben: ?unit=um hinter dem Ordner, oder `obj_info unit um` in seinem Kopf"},
+    {"; a session keeps its unit: scan into a new one with that",
+     "; eine Sitzung behält ihre Einheit: damit in eine neue scannen"},
     {"give the right --unit, or export it in millimetres",
      "die richtige ?unit= angeben, oder in Millimetern ausgeben"},
     {"it would be ", "er wäre "},

@@ -180,6 +180,7 @@ std::string red_map_of(const Outcome& plan) {
   if (!json.is_object()) {
     return plan.out;
   }
+  json.erase("left_out");
   json.erase("checklist");
   json.erase("stored");
   return json.dump();
