@@ -20,11 +20,6 @@ float square(float x) {
   return x * x;
 }
 
-/// The pose's error is one of displacement in space; a third of its square lies along any one direction.
-float pose_sigma_mm(const StitchSurface& s) {
-  return std::isfinite(s.pose_sigma_mm) ? static_cast<float>(s.pose_sigma_mm / std::sqrt(3.0)) : 0.0F;
-}
-
 /// What the passes of one scan weigh together: they err by the same pose.
 struct SharedPose {
   int id;
@@ -36,7 +31,7 @@ struct SharedPose {
     const float so_far = s.id == id ? weight : 0.0F;
     id = s.id;
     weight = so_far + s_weight;
-    return so_far == 0 ? 0.0F : 2 * so_far * s_weight * square(pose_sigma_mm(s));
+    return so_far == 0 ? 0.0F : 2 * so_far * s_weight * s.pose_variance_mm2();
   }
 };
 
@@ -48,6 +43,13 @@ float faded(std::uint8_t rim, float feather) {
   // Never quite nothing: a sample that no other scan supports stays where it was measured.
   const float part = std::clamp((static_cast<float>(rim) - 1.0F) / feather, 0.0F, 1.0F);
   return std::max(part * part, 1e-4F);
+}
+
+/// Pairs::feather, longer where one of the two hardly counts beside the other: it takes over only where the
+/// other has all but faded out, and so short a way would show the step.
+float feather_between(const StitchSurface& a, const StitchSurface& b, const Pairs& pairs) {
+  const auto [least, most] = std::minmax(a.pose_share, b.pose_share);
+  return std::min(pairs.feather * std::sqrt(most / least), static_cast<float>(kMostRim - 1));
 }
 
 /// Along which a sample moves: towards the laser. It is known to lie on the laser's ray, and errs along it,
@@ -85,6 +87,14 @@ class Averager {
 
   void enter(std::size_t node);
   [[nodiscard]] Projection meeting(const Course& course, const PairStart& start, std::size_t other) const;
+  /// In the average.
+  [[nodiscard]] float own_weight(std::size_t sample) const {
+    return from_.weight(sample) * from_.pose_share * faded(from_.rim[sample], feather_);
+  }
+  [[nodiscard]] float weight_of(std::size_t other, const Projection& q) const {
+    const StitchSurface& on = *others_[other];
+    return q.weight * on.pose_share * faded(q.rim, feather_between(from_, on, *pairs_[other]));
+  }
   void write_average(const Course& course, std::size_t at, FusedSamples& out) const;
   [[nodiscard]] float sigma_mm(const Course& course, float shift_mm, float weight_sum) const;
 
@@ -105,7 +115,7 @@ void Averager::enter(std::size_t node) {
   for (std::size_t k = 0; k < others_.size(); ++k) {
     if (const PairStart start = pair_start(from_, node, *others_[k], *pairs_[k]); start.sample >= 0) {
       starts_.emplace_back(k, start);
-      feather_ = std::max(feather_, pairs_[k]->feather);
+      feather_ = std::max(feather_, feather_between(from_, *others_[k], *pairs_[k]));
     }
   }
 }
@@ -134,7 +144,7 @@ Projection Averager::meeting(const Course& course, const PairStart& start, std::
 void Averager::write_average(const Course& course, std::size_t at, FusedSamples& out) const {
   const std::size_t i = course.sample;
   float shift_sum = 0;
-  float weight_sum = from_.weight(i) * faded(from_.rim[i], feather_);
+  float weight_sum = own_weight(i);
   float doubt = 1.0F - from_.reliability(i);
   bool sparse = from_.is_sparse(i);
   std::size_t scans = 1;
@@ -143,7 +153,7 @@ void Averager::write_average(const Course& course, std::size_t at, FusedSamples&
     const int id = others_[k]->id;
     scans += id != last && id != from_.id ? 1 : 0;  // passes of one scan follow each other
     last = id;
-    const float weight = q.weight * faded(q.rim, pairs_[k]->feather);
+    const float weight = weight_of(k, q);
     shift_sum += weight * q.along_mm;
     weight_sum += weight;
     doubt *= 1.0F - q.reliability;
@@ -162,18 +172,18 @@ void Averager::write_average(const Course& course, std::size_t at, FusedSamples&
 /// where the clay bends all other scans' triangles lie to the same side of it.
 float Averager::sigma_mm(const Course& course, float shift_mm, float weight_sum) const {
   const auto variance_of = [](const StitchSurface& s, float weight) {
-    return s.variance_of_weight / weight + square(pose_sigma_mm(s));
+    return s.variance_of_weight / weight + s.pose_variance_mm2();
   };
   const float own = from_.weight(course.sample);
   const float own_variance = variance_of(from_, own);
-  const float own_weight = own * faded(from_.rim[course.sample], feather_);
-  float variance_sum = square(own_weight) * own_variance;
-  SharedPose own_pose{from_.id, own_weight};
+  const float own_part = own_weight(course.sample);
+  float variance_sum = square(own_part) * own_variance;
+  SharedPose own_pose{from_.id, own_part};
   SharedPose last_pose{from_.id, 0};
   float bulge_sum = 0;
   float chi2 = 0;
   for (const auto& [k, q] : found_) {
-    const float weight = q.weight * faded(q.rim, pairs_[k]->feather);
+    const float weight = weight_of(k, q);
     const float variance = variance_of(*others_[k], q.weight);
     variance_sum += square(weight) * variance;
     SharedPose& pose = others_[k]->id == from_.id ? own_pose : last_pose;

@@ -144,7 +144,7 @@ double mismatch_mm(const StitchSurface& from, const StitchSurface& to, double re
 
 double pair_reach_mm(const StitchSurface& a, const StitchSurface& b, const PairingOptions& options) {
   const double spacing = std::max(a.spacing_mm, b.spacing_mm);
-  const double sigma = std::hypot(a.pose_sigma_mm, b.pose_sigma_mm);
+  const double sigma = std::hypot(a.told_pose_sigma_mm, b.told_pose_sigma_mm);
   const double plain =
       options.reach_factor * spacing + (std::isfinite(sigma) ? options.sigma_factor * sigma : 0.0);
   const double most = std::max(plain, options.most_reach_factor * spacing);

@@ -2,11 +2,85 @@
 // Copyright The Dubsar developers
 #include "triangulation/stitch_entry.h"
 
+#include <algorithm>
 #include <cstddef>
 
 #include "core/parallel.h"
+#include "triangulation/misplacement.h"
 
 namespace dubsar {
+
+std::optional<FoundPairs> pairs_between(const PassKey& key, const StitchSurface& surface,
+                                        const PassKey& other_key, const StitchSurface& other,
+                                        const PairingOptions& options, const JobContext& job) {
+  Eigen::AlignedBox3f box = other.box;
+  const auto margin =
+      static_cast<float>(options.most_reach_factor * std::max(surface.spacing_mm, other.spacing_mm));
+  if (!box.isEmpty()) {
+    box.min().array() -= margin;
+    box.max().array() += margin;
+  }
+  if (!box.intersects(surface.box)) {
+    return std::nullopt;
+  }
+  const double reach_mm = pair_reach_mm(surface, other, options);
+  FoundPairs found{other_key,
+                   find_pairs(surface, other, reach_mm, options, job),
+                   find_pairs(other, surface, reach_mm, options, job),
+                   {}};
+  if (found.there.nodes == 0 && found.back.nodes == 0) {
+    return std::nullopt;
+  }
+  found.there.feather = found.back.feather =
+      static_cast<float>(feather_samples(surface, other, step_mm(surface, other, reach_mm)));
+  if (other_key.first != key.first) {
+    found.step = key < other_key ? pose_step(surface, found.there, other, found.back)
+                                 : pose_step(other, found.back, surface, found.there);
+  }
+  return found;
+}
+
+void weigh_places(Entries& entries) {
+  std::vector<const StitchSurface*> scans;
+  std::map<int, std::size_t> place;  // by scan: passes share its pose
+  std::vector<PoseLink> links;
+  for (const auto& [key, entry] : entries) {
+    if (key.second == 0) {
+      place[key.first] = scans.size();
+      scans.push_back(&entry.surface);
+    }
+  }
+  for (const auto& [key, entry] : entries) {
+    for (const auto& [other_key, step] : entry.steps) {
+      links.push_back({place.at(key.first), place.at(other_key.first), step});
+    }
+  }
+  const std::vector<double> off_mm = misplacements_mm(scans, links);
+  for (auto& [key, entry] : entries) {
+    if (!entry.surface.take_misplacement(off_mm[place.at(key.first)])) {
+      continue;
+    }
+    entry.mark_all_changed();
+    for (const auto& [other_key, pairs] : entry.pairs) {
+      Entry& other = entries.at(other_key);
+      other.mark_changed(other.pairs.at(key));
+    }
+  }
+}
+
+std::vector<int> without_surface(const Entries& entries) {
+  std::map<int, bool> has_surface;
+  for (const auto& [key, entry] : entries) {
+    has_surface[key.first] |= !entry.surface.box.isEmpty();
+  }
+  std::vector<int> out;
+  for (const auto& [id, has] : has_surface) {
+    if (!has) {
+      out.push_back(id);
+    }
+  }
+  return out;
+}
 
 std::vector<std::uint32_t> unfused(const Entry& entry) {
   using Samples = std::vector<std::uint32_t>;

@@ -11,6 +11,7 @@
 #include "core/scan_copies.h"
 #include "triangulation/fusion.h"
 #include "triangulation/pairing.h"
+#include "triangulation/pose_step.h"
 #include "triangulation/stitch_surface.h"
 
 namespace dubsar {
@@ -20,12 +21,14 @@ using PassKey = std::pair<int, int>;
 
 struct Entry {
   StitchSurface surface;
-  std::map<PassKey, Pairs> pairs;  ///< by the other pass; those without a pair hold no matches
+  std::map<PassKey, Pairs> pairs;     ///< by the other pass; those without a pair hold no matches
+  std::map<PassKey, PoseStep> steps;  ///< to passes that come later, of other scans, by the same keys
   std::vector<std::uint8_t> wanted;
   FusedSamples fused;
   /// By node: 1 where pairs have come or gone that wanted and fused do not know of yet; empty: nowhere.
   std::vector<std::uint8_t> changed;
 
+  void mark_all_changed() { changed.assign(surface.lattice.size(), 1); }
   void mark_changed(const Pairs& at) {
     changed.resize(at.match.size(), 0);
     for (std::size_t node = 0; node < changed.size(); ++node) {
@@ -42,6 +45,26 @@ struct Held {
 
   [[nodiscard]] bool waits() const { return !waiting.empty(); }
 };
+
+struct FoundPairs {
+  PassKey other;
+  Pairs there, back;
+  PoseStep step;  ///< from the lower key to the higher; none between passes of one scan
+};
+/// Of two passes, the same whichever way round; nothing where they do not touch. Of a job that is cancelled
+/// they are no good.
+[[nodiscard]] std::optional<FoundPairs> pairs_between(const PassKey& key, const StitchSurface& surface,
+                                                      const PassKey& other_key, const StitchSurface& other,
+                                                      const PairingOptions& options, const JobContext& job);
+
+using Entries = std::map<PassKey, Entry>;
+
+/// What the steps between scans say of their poses' errors comes into their surfaces; where that changes
+/// something, averages are old.
+void weigh_places(Entries& entries);
+
+/// The scans of which no pass has a triangle; by id.
+[[nodiscard]] std::vector<int> without_surface(const Entries& entries);
 
 /// The samples that it wants and that have not been averaged yet, node by node.
 [[nodiscard]] std::vector<std::uint32_t> unfused(const Entry& entry);

@@ -7,6 +7,7 @@
 #include <cstring>
 #include <limits>
 #include <optional>
+#include <utility>
 
 #include "core/grid_geometry.h"
 #include "core/grid_noise.h"
@@ -231,7 +232,7 @@ StitchSurface bare_surface(const PlacedScan& scan) {
   const RangeGrid& grid = *scan.grid;
   StitchSurface out;
   out.id = scan.id;
-  out.pose_sigma_mm = scan.sigma_mm;
+  out.told_pose_sigma_mm = out.pose_sigma_mm = scan.sigma_mm;
   out.spacing_mm = grid.spacing_mm > 0 ? grid.spacing_mm : estimate_spacing_mm(grid);
   out.lattice = Lattice(grid.rows, grid.cols);
   out.node_sample.assign(out.lattice.size(), -1);
@@ -329,6 +330,19 @@ Eigen::AlignedBox3f box_of_usable(const StitchSurface& surface) {
 
 }  // namespace
 
+float StitchSurface::pose_variance_mm2() const {
+  const float along_mm =
+      std::isfinite(pose_sigma_mm) ? static_cast<float>(pose_sigma_mm / std::sqrt(3.0)) : 0.0F;
+  return along_mm * along_mm;
+}
+
+bool StitchSurface::take_misplacement(double misplacement_mm) {
+  const bool says_more = misplacement_mm > 0 && !(misplacement_mm <= told_pose_sigma_mm);
+  const double before_mm = std::exchange(pose_sigma_mm, says_more ? misplacement_mm : told_pose_sigma_mm);
+  pose_share = 1.0F / (1.0F + pose_variance_mm2() * weight_of_best);
+  return pose_sigma_mm != before_mm && !(std::isnan(pose_sigma_mm) && std::isnan(before_mm));
+}
+
 StitchSurface make_scan_surface(const PlacedScan& scan, const StitchSurfaceOptions& options,
                                 const JobContext& job) {
   const RangeGrid& grid = *scan.grid;
@@ -363,6 +377,7 @@ StitchSurface make_scan_surface(const PlacedScan& scan, const StitchSurfaceOptio
   const double systematic_mm = kSystematicOfSpacing * out.spacing_mm;
   out.weight_of_best =
       static_cast<float>(1.0 / (out.noise_mm * out.noise_mm + systematic_mm * systematic_mm));
+  out.pose_share = 1.0F / (1.0F + out.pose_variance_mm2() * out.weight_of_best);
   const double normal_noise_mm =
       std::max(noise_along_normal_mm(surface, out.usable).value_or(out.noise_mm), kLeastNoiseMm);
   out.variance_of_weight = static_cast<float>(normal_noise_mm * normal_noise_mm) * out.weight_of_best;

@@ -41,7 +41,8 @@ enum UsableBit : std::uint8_t {
 /// holds all that stitching needs of a scan, 27 bytes a sample, 30 with colours: the grid itself may go.
 struct StitchSurface {
   int id = 0;
-  double pose_sigma_mm = 0;
+  double told_pose_sigma_mm = 0;  ///< as it came
+  double pose_sigma_mm = 0;       ///< that, or what the overlaps with other scans say, if that is more
   double spacing_mm = 0;
   double noise_mm = 0;  ///< of a sample along the view
   /// × 1 / weight(): the variance of a sample along the normal, mm², by its noise alone.
@@ -56,6 +57,7 @@ struct StitchSurface {
   std::vector<std::uint16_t> weight_code;            ///< × kCodes, of weight_of_best
   float weight_of_best = 0;                          ///< 1 / mm²
   std::vector<std::array<std::uint8_t, 3>> colours;  ///< sRGB as the scanner gave them, or empty
+  float pose_share = 1;                              ///< of weight(): what the error of the pose leaves of it
   std::vector<std::uint8_t> rim;  ///< samples to the rim of the triangulated area: 1 on it, at most kMostRim
   Eigen::AlignedBox3f box;        ///< of the usable samples, model frame
   RigidTransform scanner_from_model;
@@ -74,10 +76,16 @@ struct StitchSurface {
   }
   /// For averaging, 1 / mm²: inverse to the variance along the normal, which hardly grows with the incidence
   /// (the noise along the view does, its part along the normal shrinks). Less at the rim, little for sparse
-  /// samples; > 0 if usable. It takes in what a surface through samples µ apart may be off by.
+  /// samples; > 0 if usable. It takes in what a surface through samples µ apart may be off by, not the pose:
+  /// × pose_share.
   [[nodiscard]] float weight(std::size_t i) const {
     return static_cast<float>(weight_code[i]) * (weight_of_best / kCodes);
   }
+  /// The pose's error is one of displacement in space; a third of its square lies along any one direction.
+  [[nodiscard]] float pose_variance_mm2() const;
+  /// How much the pose is off by what the overlaps say (0: nothing); what was told counts if that is more.
+  /// False where that changes nothing.
+  bool take_misplacement(double misplacement_mm);
   /// Where its cells are; it holds no normals.
   [[nodiscard]] GridSurface surface() const {
     return {lattice.rows, lattice.cols, spacing_mm, points, {}, view};

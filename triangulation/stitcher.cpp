@@ -38,6 +38,7 @@ struct Stitcher::Impl {
   std::map<int, Held> held;          ///< all scans
   std::map<PassKey, Entry> entries;  ///< of those that take part: each has a pass 0
   std::set<PassKey> unpaired;        ///< came since settle()
+  bool places_are_old = false;       ///< pairs have come or gone since weigh_places()
 
   /// `before`: what comes with it.
   [[nodiscard]] Status may_enter(const PlacedScan& scan, const std::set<int>& before) const {
@@ -122,11 +123,7 @@ struct Stitcher::Impl {
 
   /// Pairs the new pass with those that its box touches. False when cancelled: then nothing has changed.
   bool pair(const PassKey& key, const JobContext& job) {
-    struct Found {
-      const PassKey* other;
-      Pairs there, back;
-    };
-    std::vector<Found> found;
+    std::vector<FoundPairs> all;
     Entry& entry = entries.at(key);
     for (auto& [other_key, other] : entries) {
       if (other_key == key || unpaired.contains(other_key)) {
@@ -135,37 +132,25 @@ struct Stitcher::Impl {
       if (job.cancelled()) {
         return false;
       }
-      Eigen::AlignedBox3f box = other.surface.box;
-      const auto margin = static_cast<float>(options.pairing.most_reach_factor *
-                                             std::max(entry.surface.spacing_mm, other.surface.spacing_mm));
-      if (!box.isEmpty()) {
-        box.min().array() -= margin;
-        box.max().array() += margin;
+      std::optional<FoundPairs> found =
+          pairs_between(key, entry.surface, other_key, other.surface, options.pairing, job);
+      if (found) {
+        all.push_back(std::move(*found));
       }
-      if (!box.intersects(entry.surface.box)) {
-        continue;
-      }
-      const double reach = pair_reach_mm(entry.surface, other.surface, options.pairing);
-      Pairs there = find_pairs(entry.surface, other.surface, reach, options.pairing, job);
-      Pairs back = find_pairs(other.surface, entry.surface, reach, options.pairing, job);
-      if (there.nodes == 0 && back.nodes == 0) {
-        continue;
-      }
-      there.feather = back.feather = static_cast<float>(
-          feather_samples(entry.surface, other.surface, step_mm(entry.surface, other.surface, reach)));
-      found.push_back({&other_key, std::move(there), std::move(back)});
     }
     if (job.cancelled()) {
       return false;
     }
-    for (Found& pairs : found) {
-      Entry& other = entries.at(*pairs.other);
+    for (FoundPairs& pairs : all) {
+      Entry& other = entries.at(pairs.other);
       other.mark_changed(pairs.back);
-      entry.pairs.emplace(*pairs.other, std::move(pairs.there));
+      (key < pairs.other ? entry.steps[pairs.other] : other.steps[key]) = pairs.step;
+      entry.pairs.emplace(pairs.other, std::move(pairs.there));
       other.pairs.emplace(key, std::move(pairs.back));
     }
     entry.fused = FusedSamples(entry.surface);
-    entry.changed.assign(entry.surface.lattice.size(), 1);
+    entry.mark_all_changed();
+    places_are_old = true;
     return true;
   }
 
@@ -182,6 +167,9 @@ struct Stitcher::Impl {
         return false;
       }
       unpaired.erase(unpaired.begin());
+    }
+    if (std::exchange(places_are_old, false)) {
+      weigh_places(entries);
     }
     return true;
   }
@@ -286,6 +274,7 @@ struct Stitcher::Impl {
   void erase_entries(int id) {
     const auto is_of_scan = [id](const auto& item) { return item.first.first == id; };
     std::erase_if(entries, is_of_scan);
+    places_are_old = true;
     std::erase_if(unpaired, [id](const PassKey& key) { return key.first == id; });
     for (auto& [other_key, other] : entries) {
       for (const auto& [key, pairs] : other.pairs) {
@@ -294,6 +283,7 @@ struct Stitcher::Impl {
         }
       }
       std::erase_if(other.pairs, is_of_scan);
+      std::erase_if(other.steps, is_of_scan);
     }
   }
 };
@@ -330,6 +320,10 @@ std::vector<ScanCopy> Stitcher::copies() const {
   return out;
 }
 
+std::vector<int> Stitcher::without_surface() const {
+  return dubsar::without_surface(impl_->entries);
+}
+
 std::vector<Stitcher::Overlap> Stitcher::overlaps() const {
   std::map<std::pair<int, int>, Overlap> found;  // of all passes of two scans together
   impl_->settle(JobContext{});
@@ -341,7 +335,7 @@ std::vector<Stitcher::Overlap> Stitcher::overlaps() const {
         overlap.id = id;
         overlap.other_id = other_id;
         overlap.nodes += pairs.nodes;
-        overlap.step_mm = std::max(overlap.step_mm, step_mm(entry.surface, other, pairs.reach_mm));
+        overlap.step_mm = std::max(overlap.step_mm, entry.steps.at(other_key).step_mm());
         overlap.spacing_mm = std::max(entry.surface.spacing_mm, other.spacing_mm);
       }
     }

@@ -4,6 +4,7 @@
 
 #include <memory>
 #include <span>
+#include <vector>
 
 #include "core/job.h"
 #include "core/mesh.h"
@@ -64,14 +65,16 @@ class Stitcher {
   Status update(const JobContext& job);
   /// Those held that take no part, since another has the same samples; by id.
   [[nodiscard]] std::vector<ScanCopy> copies() const;
+  /// Those that take part and have no triangle, so that nothing of them is in the mesh; by id.
+  [[nodiscard]] std::vector<int> without_surface() const;
   /// Two scans that overlap, and how far apart their poses hold their surfaces beyond what noise explains.
   struct Overlap {
     int id = 0, other_id = 0;
     std::size_t nodes = 0;  ///< of the lattice that hold a pair: for every sixteen samples one
-    double step_mm = 0;
+    double step_mm = 0;     ///< RMS along the normal; 0 where it may be chance
     double spacing_mm = 0;  ///< the coarser
     /// Far enough apart to show in the mesh.
-    [[nodiscard]] bool is_off() const { return step_mm > 0.75 * spacing_mm; }
+    [[nodiscard]] bool is_off() const { return step_mm > 0.4 * spacing_mm; }
   };
   /// Of the scans that take part.
   [[nodiscard]] std::vector<Overlap> overlaps() const;

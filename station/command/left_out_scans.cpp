@@ -22,6 +22,8 @@ const char* state_of(LeftOutScan::Why why) {
       return "failed";
     case LeftOutScan::Why::kNoPose:
       return "no_pose";
+    case LeftOutScan::Why::kNoSurface:
+      return "no_surface";
     case LeftOutScan::Why::kCopy:
       break;
   }
@@ -37,6 +39,7 @@ const char* word_of(LeftOutScan::Why why) {
     case LeftOutScan::Why::kFailed:
       return state_of(why);
     case LeftOutScan::Why::kNoPose:
+    case LeftOutScan::Why::kNoSurface:
     case LeftOutScan::Why::kCopy:
       break;
   }

@@ -15,7 +15,7 @@ namespace dubsar {
 
 /// A scan that stands and is no part of the mesh, and why.
 struct LeftOutScan {
-  enum class Why { kUnreadable, kUnsure, kFailed, kNoPose, kCopy };
+  enum class Why { kUnreadable, kUnsure, kFailed, kNoPose, kNoSurface, kCopy };
 
   int id = -1;       ///< -1 of a folder's file that cannot be read: it has no number
   std::string file;  ///< the scan's original name
@@ -33,8 +33,8 @@ struct LeftOutScan {
 
 /// Says which it is, and why.
 void warn_of(const LeftOutScan& scan);
-/// [{"id":3,"file":"…","state":"unreadable|unsure|failed|no_pose|copy","reason":"…"}]; no `id` where there is
-/// none.
+/// [{"id":3,"file":"…","state":"unreadable|unsure|failed|no_pose|no_surface|copy","reason":"…"}]; no `id`
+/// where there is none.
 [[nodiscard]] nlohmann::ordered_json left_out_json(const std::vector<LeftOutScan>& scans);
 /// How many of them cannot be read.
 [[nodiscard]] std::ptrdiff_t unreadable_of(const std::vector<LeftOutScan>& scans);

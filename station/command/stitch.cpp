@@ -293,6 +293,18 @@ void leave_out_copies(const Stitcher& stitcher, Taken& taken) {
   }
 }
 
+/// Their poses need not be wrong.
+void leave_out_without_surface(const Stitcher& stitcher, Taken& taken) {
+  for (const int id : stitcher.without_surface()) {
+    taken.leave_out(
+        {id, taken.names.at(id), LeftOutScan::Why::kNoSurface,
+         "it has no surface, since no three neighbouring samples of its rows and columns make a triangle; "
+         "scan again, nearer or with more of the tablet in view"});
+    taken.names.erase(id);
+    --taken.scans;
+  }
+}
+
 Result<int> stitch_all(const ScanSetArguments& arguments, const StitchStamp& stamp, CommandContext& context) {
   auto stitcher = std::make_unique<Stitcher>();
   const bool has_poses = !arguments.poses.empty() || SessionStore::is_session(arguments.path);
@@ -310,6 +322,7 @@ Result<int> stitch_all(const ScanSetArguments& arguments, const StitchStamp& sta
   }
   taken->scans -= stitcher->copies().size();
   leave_out_copies(*stitcher, *taken);
+  leave_out_without_surface(*stitcher, *taken);
   warn_of_places(*stitcher, taken->names);
   const Result<Mesh> mesh = stitcher->take_mesh(context.job);
   if (!mesh) {

@@ -91,6 +91,25 @@ TEST_F(StitchCommand, NamesAScanThatLiesByItself) {
   EXPECT_THAT(outcome.err, HasSubstr(test::scan_name(1) + " overlaps no other scan"));
 }
 
+TEST_F(StitchCommand, AScanOfOneRowIsNotCalledMisplaced) {
+  RangeGrid row;
+  row.allocate(1, 40);
+  row.spacing_mm = 0.1;
+  for (std::size_t i = 0; i < row.size(); ++i) {
+    row.x[i] = 0.1F * static_cast<float>(i);
+    row.valid[i] = 1;
+  }
+  ASSERT_TRUE(write_grid_ply(fs::path(at("scans")) / "scan_9.ply", row));
+  poses_.push_back(poses_[1]);
+  poses_.back().id = 3;
+  poses_.back().file = "scan_9.ply";
+  const Outcome outcome = stitched();
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_THAT(outcome.complaints(), SizeIs(1)) << outcome.err;
+  EXPECT_THAT(outcome.err, HasSubstr("scan_9.ply is left out: it has no surface"));
+  EXPECT_THAT(outcome.out, HasSubstr("faces of 3 scans"));
+}
+
 TEST_F(StitchCommand, LeavesOutAScanThatCameTwice) {
   ASSERT_EQ(stitched().status, 0);
   const Mesh once = read_mesh(at("mesh.ply")).value();

@@ -225,12 +225,15 @@ TEST(Stitcher, NoiseAlongTheLaserFoldsNoCellOver) {
     test::ScanSet set;
     for (int k = 0; k < 3; ++k) {
       Random random(static_cast<std::uint64_t>(k) + 1);
-      RangeGrid grid =
-          test::height_grid(150, 150, 0.025, [&](double, double) { return 0.02 * random.normal(); });
+      const RigidTransform pose = RigidTransform::from_twist({0.1 * k, -0.1 * k, 0.4 * k}, {0, 0, 0});
+      const Eigen::Vector3d n = pose.rotation.transpose() * Eigen::Vector3d::UnitZ();
+      RangeGrid grid = test::height_grid(150, 150, 0.025, [&](double x, double y) {
+        return -(n.x() * x + n.y() * y) / n.z() + 0.02 * random.normal();
+      });
       if (laser_known) {
         grid.view.laser_mm = Eigen::Vector3d(0, 0, 500);
       }
-      set.add(std::move(grid), RigidTransform::from_twist({0.1 * k, -0.1 * k, 0.4 * k}, {0, 0, 0}));
+      set.add(std::move(grid), pose);
     }
     return stitched(set);
   };

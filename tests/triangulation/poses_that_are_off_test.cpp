@@ -1,0 +1,146 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+//
+// What is told of poses that are off, and how little they harm.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "sim/scanner.h"
+#include "tests/triangulation/support/ball_scans.h"
+#include "tests/triangulation/support/evenly_spread.h"
+#include "tests/triangulation/support/simulated_tablet.h"
+#include "triangulation/mesh_check.h"
+
+namespace dubsar {
+namespace {
+
+using test::stitched;
+using ::testing::ElementsAre;
+using ::testing::IsEmpty;
+
+Stitcher holding(const test::ScanSet& set) {
+  Stitcher stitcher;
+  EXPECT_TRUE(stitcher.add(set.placed, JobContext{}));
+  return stitcher;
+}
+
+/// Six sides of a ball, of poses that nobody tells anything of; the third is off.
+test::ScanSet ball_with_one_off(const Eigen::Vector3d& off_mm) {
+  test::ScanSet set = test::ball();
+  for (PlacedScan& scan : set.placed) {
+    scan.sigma_mm = 0;
+  }
+  set.placed[2].model_from_scanner.translation_mm += off_mm;
+  return set;
+}
+
+const Eigen::Vector3d kOff(0.12, 0.1, 0.12);  // 0.2 mm
+
+struct Found {
+  double error_mm = 0, ratio = 0, reliability = 0;
+};
+/// RMS distance from the ball, RMS of it over sigma, mean reliability.
+Found found(const Mesh& mesh, int least_scans, int most_scans) {
+  Found sum;
+  double count = 0;
+  for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
+    if (mesh.scans[v] < least_scans || mesh.scans[v] > most_scans) {
+      continue;
+    }
+    const double error_mm = mesh.positions[v].cast<double>().norm() - test::kRadius;
+    sum.error_mm += error_mm * error_mm;
+    sum.ratio += std::pow(error_mm / static_cast<double>(mesh.sigma_mm[v]), 2);
+    sum.reliability += static_cast<double>(mesh.reliability[v]);
+    ++count;
+  }
+  EXPECT_GT(count, 100);
+  return {std::sqrt(sum.error_mm / count), std::sqrt(sum.ratio / count), sum.reliability / count};
+}
+
+TEST(PosesThatAreOff, TrueOnesOfNoisyScansAreNot) {
+  const test::SimulatedTablet tablet({12, 9, 5});
+  sim::ScannerOptions options;
+  options.spacing_mm = 0.1;
+  options.noise_mm = 0.04;
+  const sim::TriangulationScanner scanner(options);
+  test::ScanSet set;
+  JobContext job;
+  constexpr int kScans = 12;
+  for (int k = 0; k < kScans; ++k) {
+    const RigidTransform pose = test::tablet_from_scanner(k, kScans);
+    auto grid = scanner.scan_grid(tablet.scene(), pose, static_cast<std::uint64_t>(k) + 1, job);
+    ASSERT_TRUE(grid.has_value());
+    set.add(std::move(*grid), pose);
+  }
+  for (const Stitcher::Overlap& overlap : holding(set).overlaps()) {
+    EXPECT_FALSE(overlap.is_off()) << overlap.id << " " << overlap.other_id << " " << overlap.step_mm;
+  }
+}
+
+TEST(PosesThatAreOff, OneIsToldByItsPairsAndNoOthers) {
+  std::size_t told = 0;
+  for (const Stitcher::Overlap& overlap : holding(ball_with_one_off(kOff)).overlaps()) {
+    EXPECT_FALSE(overlap.is_off() && overlap.id != 2 && overlap.other_id != 2)
+        << overlap.id << " " << overlap.other_id << " " << overlap.step_mm;
+    told += overlap.is_off() ? 1 : 0;
+  }
+  EXPECT_GE(told, 2U);
+  for (const Stitcher::Overlap& overlap : holding(ball_with_one_off({0, 0, 0})).overlaps()) {
+    EXPECT_EQ(overlap.step_mm, 0.0);
+  }
+}
+
+TEST(PosesThatAreOff, OneSaysSoInSigmaAndReliabilityThoughNobodyToldIt) {
+  const test::ScanSet set = ball_with_one_off(kOff);
+  const Mesh mesh = stitched(set);
+  EXPECT_TRUE(check_mesh(mesh).is_manifold());
+  const Found alone = found(mesh, 1, 1);
+  EXPECT_LT(alone.ratio, 1.5);
+  EXPECT_GT(alone.ratio, 0.5);
+  EXPECT_LT(alone.reliability, found(stitched(ball_with_one_off({0, 0, 0})), 1, 1).reliability - 0.03);
+}
+
+TEST(PosesThatAreOff, OneHardlyMovesTheOthers) {
+  const double true_mm = found(stitched(ball_with_one_off({0, 0, 0})), 2, 255).error_mm;
+  test::ScanSet set = ball_with_one_off(kOff);
+  // As if it weighed like the others it would be 8.4 times.
+  EXPECT_LT(found(stitched(set), 2, 255).error_mm, 6.5 * true_mm);
+  set.placed[2].sigma_mm = 0.2;  // told
+  EXPECT_LT(found(stitched(set), 2, 255).error_mm, 6.5 * true_mm);
+}
+
+TEST(PosesThatAreOff, OneThatGoesLeavesNoTrace) {
+  const test::ScanSet set = ball_with_one_off(kOff);
+  Stitcher stitcher = holding(set);
+  const Mesh all = stitched(set);
+  test::expect_same(stitcher.mesh(), all);
+  EXPECT_TRUE(stitcher.remove(2));
+  test::ScanSet without = ball_with_one_off(kOff);
+  without.placed.erase(without.placed.begin() + 2);
+  test::expect_same(stitcher.mesh(), stitched(without));
+  ASSERT_TRUE(stitcher.add(set.placed[2], JobContext{}));
+  test::expect_same(stitcher.mesh(), all);
+}
+
+TEST(WithoutSurface, ScansOfOneRowOrOnePlaceAreTold) {
+  const auto flat = [](double, double) { return 0.0; };
+  test::ScanSet set;
+  set.add(test::height_grid(30, 30, 0.1, flat), {});
+  set.add(test::height_grid(1, 30, 0.1, flat), {});
+  RangeGrid one_place = test::height_grid(30, 30, 0.1, flat);
+  std::fill(one_place.x.begin(), one_place.x.end(), 0.5F);
+  std::fill(one_place.y.begin(), one_place.y.end(), 0.5F);
+  one_place.spacing_mm = 0.1;
+  set.add(std::move(one_place), {});
+  EXPECT_THAT(holding(set).without_surface(), ElementsAre(1, 2));
+  set.placed.resize(1);
+  EXPECT_THAT(holding(set).without_surface(), IsEmpty());
+}
+
+}  // namespace
+}  // namespace dubsar
