@@ -5,12 +5,14 @@
 #include <charconv>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "acquisition/session_impl.h"
 #include "acquisition/session_presence.h"
 #include "acquisition/session_query.h"
 #include "acquisition/session_rebuild.h"
 #include "formats/grid_file.h"
+#include "formats/sign_off_json.h"
 
 namespace dubsar::session {
 
@@ -72,6 +74,13 @@ Lineage lineage_of(const Events& own, const Events& copy, const Losses& lost) {
   return out;
 }
 
+/// Of a signature that can be read; 0: it is none.
+int sign_off_number(const Event& event) {
+  const Result<RecordedSignOff> recorded =
+      event.kind == "signed" ? parse_recorded_sign_off(event.json, {}) : std::unexpected(Error{});
+  return recorded ? recorded->sign_off.number : 0;
+}
+
 /// Where no event tells: every whole grid that both have under one number is the same, and there is one.
 bool has_same_grids(const fs::path& folder, SqlDatabase& copy) {
   int same = 0;
@@ -117,6 +126,7 @@ class BringingBack {
   [[nodiscard]] Status take_events();
   [[nodiscard]] Status take_scans();
   [[nodiscard]] bool may_take_file(const std::string& path) const;
+  [[nodiscard]] bool may_take_scan(const std::string& file) const;
   void take_table(const char* name, const std::function<bool(const std::string&)>& also = {});
   [[nodiscard]] Status renumber(std::int64_t from, std::int64_t by);
 
@@ -165,6 +175,14 @@ Result<std::optional<std::string>> BringingBack::compare() {
   if (lineage_.since_loss && was_signed(own_events_, lineage_.parted) &&
       was_signed(copy_events_, lineage_.parted)) {
     return "both were signed since the loss, and no signature may take the place of another";
+  }
+  for (const std::int64_t lost : lost_events()) {
+    const int number = sign_off_number(copy_events_.at(lost));
+    const auto has_it = [&](const auto& one) { return sign_off_number(one.second) == number; };
+    if (number > 0 && std::ranges::any_of(own_events_, has_it)) {
+      return "sign-off " + std::to_string(number) +
+             " was lost and another has its number since, and no signature may take the place of another";
+    }
   }
   return std::nullopt;
 }
@@ -222,6 +240,12 @@ void BringingBack::take_table(const char* name, const std::function<bool(const s
   }
 }
 
+/// A grid that is missing or damaged keeps its row from nothing: the row says what it was.
+bool BringingBack::may_take_scan(const std::string& file) const {
+  const auto sum = recorded_sum(copy_, file);
+  return may_take_file(file) || (sum && *sum && !verify_grid_file(folder_ / file));
+}
+
 bool BringingBack::may_take_file(const std::string& path) const {
   std::error_code unknown;
   const auto sum = recorded_sum(copy_, path);
@@ -234,7 +258,9 @@ bool BringingBack::may_take_file(const std::string& path) const {
 }
 
 Status BringingBack::take_scans() {
-  // Rows that were made of the grids alone, after the loss: they do not know what was taken out.
+  // Rows that were made of the grids alone, after the loss: they do not know what was taken out. What the
+  // copy has of them is of the same bytes, whatever lies there by now.
+  std::set<int> replaced;
   for (const auto& [number, event] : own_events_) {
     const nlohmann::json detail = nlohmann::json::parse(event.json, nullptr, false);
     if (event.kind != kAdopted || !detail.is_object() || !detail.contains("id") ||
@@ -244,9 +270,11 @@ Status BringingBack::take_scans() {
     const int id = detail["id"].get<int>();
     const auto own = recorded_sum(own_, grid_name(id));
     const auto there = recorded_sum(copy_, grid_name(id));
-    if (!is_lost("scans", std::to_string(id)) || !own || !there || !*own || *own != *there) {
+    if (!is_lost("scans", std::to_string(id)) || !own || !there || !*own || *own != *there ||
+        !has_row(copy_, row_name("scans", std::to_string(id)))) {
       continue;
     }
+    replaced.insert(id);
     Result<SqlStatement> take = own_.prepare("DELETE FROM scans WHERE id = ?1");
     if (Status taken = take ? take->bind(1, id).run() : std::unexpected(take.error()); !taken) {
       return taken;
@@ -257,7 +285,7 @@ Status BringingBack::take_scans() {
     int id = -1;
     const auto [rest, problem] = std::from_chars(key.data(), key.data() + key.size(), id);
     return problem == std::errc{} && rest == key.data() + key.size() && id >= 0 &&
-           may_take_file(grid_name(id));
+           (replaced.contains(id) || may_take_scan(grid_name(id)));
   });
   const Result<std::map<int, DropState>> drops = dropped_by_record(own_);
   if (!drops) {

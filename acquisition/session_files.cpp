@@ -232,7 +232,7 @@ Result<fs::path> copy_aside(const fs::path& path) {
   }
   const Result<std::string> bytes = read_whole_file(path);
   if (!bytes) {
-    return std::unexpected(bytes.error());
+    return move_aside(path);  // which needs no reading
   }
   fs::path aside = name_aside(path);
   if (Status kept = write_file_atomically(aside, std::string_view(*bytes)); !kept) {

@@ -72,7 +72,7 @@ inline constexpr const char* kAsideMark = ".damaged-";
 /// Moves a damaged file, or a folder with one, to its name aside, durably, and returns that name.
 [[nodiscard]] Result<std::filesystem::path> move_aside(const std::filesystem::path& path);
 /// Copies a damaged file to its name aside, durably, and returns that name; the file itself stays. Where the
-/// same bytes lie aside already, that is their name.
+/// same bytes lie aside already, that is their name. What cannot be read is moved there.
 [[nodiscard]] Result<std::filesystem::path> copy_aside(const std::filesystem::path& path);
 
 }  // namespace dubsar::session

@@ -142,10 +142,12 @@ Result<SqlDatabase> open_for_writing(const fs::path& folder, SessionOpening& ope
   }
   if (fault && fault->kind == ErrorKind::kBadInput) {
     db = std::unexpected(*fault);  // closes it
-    db = rebuild(folder, *fault, sums, opening);
+    db = rebuild(folder, *fault, sums, *commits_lost, opening);
     rebuilt = db.has_value();
   } else if (fault) {
     return std::unexpected(*fault);
+  } else if (Status noted = *commits_lost ? note_losses(*db, {{}, true}) : Status(); !noted) {
+    return std::unexpected(noted.error());  // before anything else: what fails later closes it, with its log
   } else if (Status kept = keep_backup_aside(folder, sums, false, opening); !kept) {
     return std::unexpected(kept.error());
   }
@@ -160,11 +162,6 @@ Result<SqlDatabase> open_for_writing(const fs::path& folder, SessionOpening& ope
   }
   if (Status synced = sync_folder(folder); !synced) {
     return std::unexpected(synced.error());
-  }
-  if (*commits_lost) {
-    if (Status noted = note_losses(*db, {{}, true}); !noted) {
-      return std::unexpected(noted.error());
-    }
   }
   return db;
 }

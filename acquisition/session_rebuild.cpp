@@ -185,8 +185,12 @@ Status keep_backup_aside(const fs::path& folder, const Result<Sums>& sums, bool 
   }
   for (const char* name : names) {
     const Result<fs::path> aside = copy_aside(folder / name);
-    if (!aside) {
+    if (!aside && read_whole_file(folder / name)) {
       return std::unexpected(aside.error());
+    }
+    if (!aside) {  // nobody can read it, here or elsewhere: no reason to keep the writer out
+      opening.damage.push_back(aside.error());
+      continue;
     }
     opening.notes.push_back(aside_note(aside->filename().string()));
   }
@@ -259,7 +263,7 @@ class FreshDatabase {
 }  // namespace
 
 Result<SqlDatabase> rebuild(const fs::path& folder, const Error& fault, const Result<Sums>& sums,
-                            SessionOpening& opening) {
+                            bool commits_lost, SessionOpening& opening) {
   if (Status back = bring_back_log(folder); !back) {
     return std::unexpected(back.error());
   }
@@ -275,6 +279,7 @@ Result<SqlDatabase> rebuild(const fs::path& folder, const Error& fault, const Re
       return std::unexpected(filled.error());
     }
     salvaged = std::move(*filled);
+    salvaged.lost.more = salvaged.lost.more || commits_lost;
     // Before anything else is written: a loss stands where it was in the order of events.
     if (Status noted = salvaged.lost.any() ? note_losses(*to, salvaged.lost) : Status(); !noted) {
       return std::unexpected(noted.error());

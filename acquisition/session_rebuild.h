@@ -40,8 +40,10 @@ void note_rebuilding(const std::filesystem::path& folder, const Error& fault, co
 [[nodiscard]] Status keep_backup_aside(const std::filesystem::path& folder, const Result<Sums>& sums,
                                        bool read_rows, SessionOpening& opening);
 /// Makes a database of what is left, keeps the damaged one aside, and opens the one that is in its place.
-/// Broken off at any moment, it leaves what a next one makes the same of.
+/// Broken off at any moment, it leaves what a next one makes the same of. `commits_lost`: the log had some
+/// that nothing plays, which the record says then.
 [[nodiscard]] Result<SqlDatabase> rebuild(const std::filesystem::path& folder, const Error& fault,
-                                          const Result<Sums>& sums, SessionOpening& opening);
+                                          const Result<Sums>& sums, bool commits_lost,
+                                          SessionOpening& opening);
 
 }  // namespace dubsar::session

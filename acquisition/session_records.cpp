@@ -200,6 +200,16 @@ Result<std::optional<std::string>> SessionStore::load_document(std::string_view 
   return *row ? std::optional((*row)->text(1)) : std::nullopt;
 }
 
+Result<std::set<std::string>> SessionStore::lost_rows() const {
+  const std::scoped_lock hold(impl_->mutex);
+  Result<session::Losses> lost = session::standing_losses(*impl_->db);
+  if (!lost) {
+    return std::unexpected(lost.error());
+  }
+  lost->rows.insert(impl_->lost.rows.begin(), impl_->lost.rows.end());
+  return std::move(lost->rows);
+}
+
 Result<std::vector<std::string>> SessionStore::document_names() const {
   const std::scoped_lock hold(impl_->mutex);
   std::vector<std::string> out;

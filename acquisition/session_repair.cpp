@@ -136,6 +136,9 @@ Result<std::vector<std::string>> SessionStore::keep_damaged_records(const fs::pa
       continue;
     }
     const Result<fs::path> aside = session::copy_aside(folder / name);
+    if (!aside && !read_whole_file(folder / name)) {
+      continue;  // opening tells it
+    }
     if (!aside) {
       return std::unexpected(aside.error());
     }

@@ -7,6 +7,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -146,6 +147,8 @@ class SessionStore {
   Status save_document(std::string_view name, std::string_view json);
   [[nodiscard]] Result<std::optional<std::string>> load_document(std::string_view name) const;
   [[nodiscard]] Result<std::vector<std::string>> document_names() const;
+  /// What is lost of the records and nothing has brought back: "events row 12", "documents row tablet".
+  [[nodiscard]] Result<std::set<std::string>> lost_rows() const;
 
   /// Adds to the record of what happened. Storing, dropping and restoring scans add events of their own.
   Status append_event(std::string_view kind, std::string_view json = "{}");

@@ -3,7 +3,9 @@
 #include "acquisition/sign_off_log.h"
 
 #include <algorithm>
+#include <charconv>
 #include <map>
+#include <set>
 #include <sstream>
 #include <string_view>
 #include <utility>
@@ -116,6 +118,36 @@ Result<std::string> document_of(const SessionStore& store, const char* name, con
   return std::move(**text);
 }
 
+/// The first number after those of all sign-offs that there are, and that there may have been: each lost
+/// event may have been one, with a number above those before it.
+Result<int> number_after_all(const SessionStore& store, const std::set<std::string>& lost) {
+  constexpr std::string_view kEvent = "events row ";
+  int lost_events = 0;
+  std::int64_t last_lost = 0;
+  for (const std::string& row : lost) {
+    if (row.starts_with(kEvent)) {
+      std::int64_t number = 0;
+      std::from_chars(row.data() + kEvent.size(), row.data() + row.size(), number);
+      ++lost_events;
+      last_lost = std::max(last_lost, number);
+    }
+  }
+  const auto events = store.events();
+  if (!events) {
+    return std::unexpected(events.error());
+  }
+  int last = 0;
+  int last_before = 0;
+  for (const SessionEvent& event : *events) {
+    const Result<RecordedSignOff> recorded =
+        event.kind == kSigned ? parse_recorded_sign_off(event.json, {}) : std::unexpected(Error{});
+    const int number = recorded ? recorded->sign_off.number : 0;
+    last = std::max(last, number);
+    last_before = event.number < last_lost ? std::max(last_before, number) : last_before;
+  }
+  return std::max(last, last_before + lost_events) + 1;
+}
+
 }  // namespace
 
 Result<std::string> session_manifest(const SessionStore& store, const JobContext& job) {
@@ -164,10 +196,6 @@ Result<SignOff> sign_session(SessionStore& store, SignOff sign_off, const JobCon
                   "say it in one line");
     }
   }
-  const Result<SignOffLog> earlier = read_sign_offs(store, job);
-  if (!earlier) {
-    return std::unexpected(earlier.error());
-  }
   const Result<std::string> manifest = session_manifest(store, job);
   if (!manifest) {
     return std::unexpected(manifest.error());
@@ -177,10 +205,12 @@ Result<SignOff> sign_session(SessionStore& store, SignOff sign_off, const JobCon
     return fail(ErrorKind::kUsage, "the session's verdict is not the one that is to be signed",
                 store.folder().string(), "run dubsar plan on it, read it, and sign again");
   }
-  sign_off.number = 1;
-  for (const CheckedSignOff& one : earlier->sign_offs) {
-    sign_off.number = std::max(sign_off.number, one.sign_off.number + 1);
+  const Result<std::set<std::string>> lost = store.lost_rows();
+  const Result<int> free = lost ? number_after_all(store, *lost) : std::unexpected(lost.error());
+  if (!free) {
+    return std::unexpected(free.error());
   }
+  sign_off.number = *free;
   sign_off.digest = sha256_hex(*manifest);
   // The copies first: a sign-off that is there has what was signed beside it.
   const Result<std::vector<std::string>> names = store.document_names();
@@ -190,8 +220,10 @@ Result<SignOff> sign_session(SessionStore& store, SignOff sign_off, const JobCon
   const auto copy_name = [&](const char* name) {
     return "signed " + std::to_string(sign_off.number) + " " + name;
   };
-  while (std::ranges::binary_search(*names, copy_name("red_map"))) {
-    ++sign_off.number;  // of a sign-off that was not finished
+  const auto is_lost = [&](const char* name) { return lost->contains("documents row " + copy_name(name)); };
+  while (std::ranges::binary_search(*names, copy_name("red_map")) || is_lost("red_map") ||
+         is_lost("checklist")) {
+    ++sign_off.number;  // of a sign-off that was not finished, or whose record is lost
   }
   for (const char* name : {"red_map", "checklist"}) {
     const Result<std::optional<std::string>> text = store.load_document(name);

@@ -28,8 +28,10 @@ class Laying {
                               flat_.positions[face[2]].y()};
     const auto [low, high] = std::ranges::minmax(y);
     const bool across = high - low > 0.5F * length_mm_;
-    for (float& of_corner : y) {  // those past the end of the curve lie below its last
-      of_corner -= across && of_corner > -0.5F * length_mm_ ? length_mm_ : 0.0F;
+    std::array<bool, 3> is_past{};  // those past the end of the curve lie below its last
+    for (std::size_t k = 0; k < 3; ++k) {
+      is_past[k] = across && y[k] > -0.5F * length_mm_;
+      y[k] -= is_past[k] ? length_mm_ : 0.0F;
     }
     for (std::size_t k = 0; k < 3; ++k) {
       const std::size_t next = (k + 1) % 3;
@@ -39,7 +41,7 @@ class Laying {
       }
     }
     if (across) {
-      cut(face, y);
+      cut(face, y, is_past);
     } else {
       flat_.faces.push_back(face);
     }
@@ -47,15 +49,16 @@ class Laying {
 
  private:
   /// Two parts (Sutherland and Hodgman 1974): above the lower end, and past it, which is below the upper end.
-  void cut(const Triangle& face, const std::array<float, 3>& y) {
+  /// A corner at the very seam is past it where it was moved: its y does not tell.
+  void cut(const Triangle& face, const std::array<float, 3>& y, const std::array<bool, 3>& is_past) {
     std::vector<std::uint32_t> above;
     std::vector<std::uint32_t> past;
     for (std::size_t k = 0; k < 3; ++k) {
       const std::size_t next = (k + 1) % 3;
-      const bool is_past = y[k] < -length_mm_;
-      (is_past ? past : above).push_back(face[k]);
-      if (is_past != (y[next] < -length_mm_)) {
-        const float t = (-length_mm_ - y[k]) / (y[next] - y[k]);
+      (is_past[k] ? past : above).push_back(face[k]);
+      if (is_past[k] != is_past[next]) {
+        const float rise = y[next] - y[k];
+        const float t = rise != 0 ? std::clamp((-length_mm_ - y[k]) / rise, 0.0F, 1.0F) : 0.5F;
         above.push_back(between(face[k], face[next], t, -length_mm_));
         past.push_back(between(face[k], face[next], t, 0.0F));
       }

@@ -115,13 +115,15 @@ bool Shaper::has(std::uint32_t code_point) const {
 
 void Shaper::Impl::share_out(std::string_view text, std::span<ShapedGlyph> glyphs) const {
   std::string joined;
-  for (; !text.empty() && glyphs.size() > 1; text.remove_prefix(first_code_point(text).bytes)) {
+  while (!text.empty() && glyphs.size() > 1) {
     const CodePoint c = first_code_point(text);
+    const std::size_t bytes = std::max<std::size_t>(c.bytes, 1);  // what is no UTF-8 goes byte by byte
     hb_codepoint_t own = 0;
     hb_font_get_nominal_glyph(font.get(), c.value, &own);
     const auto glyph =
         std::ranges::find_if(glyphs, [&](const ShapedGlyph& g) { return g.index == own && g.text.empty(); });
-    (glyph == glyphs.end() ? joined : glyph->text) += text.substr(0, c.bytes);
+    (glyph == glyphs.end() ? joined : glyph->text) += text.substr(0, bytes);
+    text.remove_prefix(bytes);
   }
   const auto first = std::ranges::find_if(glyphs, [](const ShapedGlyph& g) { return g.text.empty(); });
   (first == glyphs.end() ? glyphs.back() : *first).text += joined + std::string(text);

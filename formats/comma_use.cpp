@@ -48,6 +48,14 @@ Word look_at(std::string_view text) {
   return word;
 }
 
+/// 1,234 or 1,234.5: a comma may part thousands.
+bool may_be_thousands(std::string_view word) {
+  const std::size_t comma = word.find(',');
+  const std::string_view behind = word.substr(comma + 1);
+  return !word.substr(0, comma).contains('.') && behind.size() >= 3 &&
+         std::ranges::all_of(behind.substr(0, 3), is_digit) && (behind.size() == 3 || behind[3] == '.');
+}
+
 }  // namespace
 
 CommaUse comma_use(std::string_view line) {
@@ -56,8 +64,10 @@ CommaUse comma_use(std::string_view line) {
   }
   std::size_t words = 0;
   std::size_t commas = 0;
-  bool between = false;        // for certain
-  bool points = false;         // beside a comma
+  bool between = false;  // for certain
+  bool points = false;   // beside a comma
+  bool any_point = false;
+  bool thousands = true;       // all commas may be theirs
   bool in_coordinates = true;  // each of these has a comma
   for (auto at = line.begin();;) {
     at = std::find_if_not(at, line.end(), ends_word);
@@ -72,6 +82,8 @@ CommaUse comma_use(std::string_view line) {
     }
     between = between || word.commas > 1 || !word.within;
     points = points || (word.commas > 0 && word.point);
+    any_point = any_point || text.contains('.');
+    thousands = thousands && (word.commas == 0 || may_be_thousands(text));
     in_coordinates = in_coordinates && (words >= kCoordinates || word.commas == 1);
     commas += word.commas;
     ++words;
@@ -80,7 +92,8 @@ CommaUse comma_use(std::string_view line) {
   if (commas == 0) {
     return CommaUse::kNone;
   }
-  if (between || words < kCoordinates) {
+  // Numbers with points have none that are commas.
+  if (between || words < kCoordinates || (any_point && !thousands)) {
     return words + commas >= kCoordinates ? CommaUse::kSeparator : CommaUse::kNone;
   }
   return in_coordinates && !points ? CommaUse::kDecimal : CommaUse::kEither;

@@ -20,7 +20,8 @@ enum class CommaUse {
 
 /// Decimal where blanks or semicolons part three words or more, each comma stands alone in its word between
 /// digits, no such word has a point, and each of the first three has its comma. Separators where a word has
-/// two, or one at its end or beside a sign, or where there are too few words for a point without them.
+/// two, or one at its end or beside a sign, where there are too few words for a point without them, and where
+/// a number has a point, unless the commas may part thousands.
 [[nodiscard]] CommaUse comma_use(std::string_view line);
 
 /// What the commas of a file are, told line by line.

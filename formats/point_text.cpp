@@ -85,10 +85,14 @@ Triple judge(const std::vector<float>& triples) {
 
 std::size_t count_point_lines(std::string_view head) {
   std::size_t count = 0;
-  for (TextScanner text(head); text.remaining() > 0;) {
+  TextScanner text(head);
+  for (std::size_t number = 1; text.remaining() > 0; ++number) {
     // Whatever its commas are: with decimal ones it has three words or more.
     const Line line = read_line(text.line(), false);
     count += line.count >= 3 && line.stray.empty() ? 1 : 0;
+    if (count == 0 && number > kMaxLeadingLines) {
+      break;  // as it is read: no list of points begins so late
+    }
   }
   return count;
 }

@@ -4,7 +4,9 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <map>
 #include <set>
+#include <utility>
 
 #include "planning/clusters.h"
 
@@ -21,6 +23,20 @@ struct Opening {
   Eigen::AlignedBox3d box;
   double far_mm = 0;        ///< what is connected through it lies no farther
   std::uint32_t piece = 0;  ///< that it is in
+};
+
+/// A piece that nothing has shown to be clay yet.
+struct Loose {
+  std::uint32_t piece = 0;
+  Eigen::AlignedBox3d box;
+  std::vector<Eigen::Vector3d> points_mm;
+
+  [[nodiscard]] bool is_near(const Opening& opening) const {
+    return opening.box.exteriorDistance(box) <= opening.far_mm &&
+           std::ranges::any_of(points_mm, [&](const Eigen::Vector3d& at) {
+             return opening.box.exteriorDistance(at) <= opening.far_mm;
+           });
+  }
 };
 
 /// Parts of the cover and red targets with samples, by what hangs together. A piece is named by its lowest
@@ -74,22 +90,32 @@ class Pieces {
     return out;
   }
 
-  /// By piece, where the elements and samples lie of those that are not in `clay`.
-  [[nodiscard]] std::vector<std::vector<Eigen::Vector3d>> points(const std::set<std::uint32_t>& clay) {
-    std::vector<std::vector<Eigen::Vector3d>> out(parts_ + red_.targets.size());
+  /// Where the elements and samples lie of the pieces that are not in `clay`.
+  [[nodiscard]] std::vector<Loose> loose(const std::set<std::uint32_t>& clay) {
+    std::map<std::uint32_t, Loose> out;
+    const auto add = [&](std::uint32_t piece, const Eigen::Vector3d& at) {
+      Loose& one = out[piece];
+      one.piece = piece;
+      one.box.extend(at);
+      one.points_mm.push_back(at);
+    };
     for (const auto& e : cover_.elements()) {
       if (e.part != 0 && !clay.contains(of_part(e.part))) {
-        out[of_part(e.part)].push_back(e.position_mm.cast<double>());
+        add(of_part(e.part), e.position_mm.cast<double>());
       }
     }
     for (const auto& patch : patches_) {
       for (const std::uint32_t i : patch) {
         if (!clay.contains(of_target(i))) {
-          out[of_target(i)].push_back(red_.targets[i].sample_mm);
+          add(of_target(i), red_.targets[i].sample_mm);
         }
       }
     }
-    return out;
+    std::vector<Loose> pieces;
+    for (auto& [piece, one] : out) {
+      pieces.push_back(std::move(one));
+    }
+    return pieces;
   }
 
   /// The largest, and those that may be a second body.
@@ -121,27 +147,23 @@ class Pieces {
 /// The pieces that are clay, as far as anybody can tell.
 std::set<std::uint32_t> clay_of(Pieces& pieces) {
   std::set<std::uint32_t> clay = pieces.large();
-  std::vector<std::vector<Eigen::Vector3d>> points = pieces.points(clay);
-  const std::vector<Opening> openings = pieces.openings();
+  std::vector<Loose> loose = pieces.loose(clay);
+  std::multimap<std::uint32_t, Opening> openings;
+  for (const Opening& opening : pieces.openings()) {
+    openings.emplace(opening.piece, opening);
+  }
   std::vector<std::uint32_t> news(clay.begin(), clay.end());
-  while (!news.empty()) {
-    const std::uint32_t from = news.back();
+  while (!news.empty() && !loose.empty()) {
+    const auto [begin, end] = openings.equal_range(news.back());
     news.pop_back();
-    for (const Opening& opening : openings) {
-      if (opening.piece != from) {
-        continue;
+    std::erase_if(loose, [&](const Loose& one) {
+      if (std::none_of(begin, end, [&](const auto& opening) { return one.is_near(opening.second); })) {
+        return false;
       }
-      for (std::uint32_t p = 0; p < points.size(); ++p) {
-        const auto near = [&](const Eigen::Vector3d& at) {
-          return opening.box.exteriorDistance(at) <= opening.far_mm;
-        };
-        if (!points[p].empty() && std::ranges::any_of(points[p], near)) {
-          clay.insert(p);
-          news.push_back(p);
-          points[p].clear();
-        }
-      }
-    }
+      clay.insert(one.piece);
+      news.push_back(one.piece);
+      return true;
+    });
   }
   return clay;
 }
@@ -159,9 +181,7 @@ std::vector<std::uint8_t> excuse_apart(std::span<const PlacedScan> scans, const 
   for (const auto& patch : pieces.patches()) {
     for (const std::uint32_t i : patch) {
       if (!clay.contains(pieces.of_target(i))) {
-        red.targets[i].excuse_as(Excuse::kUnneeded,
-                                 "stray return: it hangs apart from the surface, which is closed there");
-        red.targets[i].area_mm2 = 0;
+        red.targets[i].excuse_as_stray();
       }
     }
   }

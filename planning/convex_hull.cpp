@@ -22,7 +22,7 @@ using Corner = std::array<std::int64_t, 3>;
 /// GCC's and Clang's own, as C++23 names none of that width.
 __extension__ typedef __int128 Wide;
 
-/// Coordinates are whole numbers below this: the volume of four of them fits into 127 bits.
+/// Coordinates are whole numbers of at most this: the volume of four of them fits into 127 bits.
 constexpr double kMostSteps = 274877906944.0;  // 2^38
 
 struct HullFace {
@@ -31,7 +31,7 @@ struct HullFace {
   std::array<double, 3> rough_normal;  ///< the same, rounded
 };
 
-/// On a raster of 2^-38 of the extent (a third of a nanometre of 100 mm) it is told exactly which faces a
+/// On a raster of 2^-38 of the extent (a third of a picometre of 100 mm) it is told exactly which faces a
 /// point sees. Sums of doubles do not tell it: samples lie in planes and on lines, and where the face of
 /// three that nearly lie on a line is taken to be seen and its neighbours are not, the hull comes apart.
 class Hull {
@@ -56,9 +56,12 @@ class Hull {
     const Eigen::Vector3d origin = points.front();
     double extent = 0;
     for (const Eigen::Vector3d& p : points) {
+      if (!p.allFinite()) {
+        return;
+      }
       extent = std::max(extent, (p - origin).cwiseAbs().maxCoeff());
     }
-    if (!(extent > 0) || !std::isfinite(extent)) {
+    if (!(extent > 0)) {
       return;
     }
     const double steps = kMostSteps / extent;

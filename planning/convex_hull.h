@@ -25,8 +25,8 @@ namespace dubsar {
 
 /// Convex hull of some hundred points, faces counter-clockwise from outside; only its corners are used by the
 /// faces: a closed surface, whatever lies in one plane or on one line. No faces when all points lie in a
-/// plane. Incremental (de Berg et al., Computational Geometry, ch. 11), decided exactly, time O(n²): thin the
-/// points with extreme_points() first.
+/// plane, or when one is not finite. Incremental (de Berg et al., Computational Geometry, ch. 11), decided
+/// exactly, time O(n²): thin the points with extreme_points() first.
 [[nodiscard]] Mesh convex_hull(std::span<const Eigen::Vector3d> points);
 
 }  // namespace dubsar

@@ -38,6 +38,11 @@ struct RedTarget {
     excuse = why;
     reason = std::move(because);
   }
+  /// Nothing is missing where it is.
+  void excuse_as_stray() {
+    excuse_as(Excuse::kUnneeded, "stray return: it hangs apart from the surface, which is closed there");
+    area_mm2 = 0;
+  }
 };
 
 /// Where the target of each red sample is.

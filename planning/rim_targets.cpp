@@ -44,11 +44,12 @@ void settle_closed(std::span<const PlacedScan> scans, const SurfaceCover& cover,
         continue;
       }
       const bool closed = place[i] == SurfaceCover::Place::kClosed;
-      if (closed || (!rim && count <= most_stray_samples)) {
+      if (closed) {
         t.excuse_as(Excuse::kUnneeded,
-                    closed ? "nothing is missing: other scans sample the surface well on all sides of it"
-                           : "stray return: it hangs apart from the surface, which is closed there");
+                    "nothing is missing: other scans sample the surface well on all sides of it");
         t.area_mm2 = 0;
+      } else if (!rim && count <= most_stray_samples) {
+        t.excuse_as_stray();
       }
     }
   }

@@ -27,7 +27,8 @@ struct ScanMotion {
                                                     const ModelFit& fit, const ModelFitOptions& options,
                                                     bool was_found = false);
 
-/// What costs less says so beforehand: false where find_motion() has nothing that it would fit whole.
+/// What costs less says so beforehand, for tests: false where find_motion() has nothing that it would fit
+/// whole.
 [[nodiscard]] bool may_have_moved(const ScanSurface& scan, std::span<const ModelScan> model,
                                   const ModelFit& fit, const ModelFitOptions& options);
 

@@ -16,9 +16,11 @@
 #include "formats/atomic_file.h"
 #include "formats/bag_check.h"
 #include "formats/bag_text.h"
+#include "formats/corrections_json.h"
 #include "formats/files_below.h"
 #include "formats/json_node.h"
 #include "formats/same_bytes.h"
+#include "formats/selections_json.h"
 #include "station/package.h"
 #include "station/package_content.h"
 #include "station/package_source.h"
@@ -99,14 +101,28 @@ Status check_record(const fs::path& package, const fs::path& session) {
   return {};
 }
 
-/// What a person said in the viewer: with the session's own file gone the package may have the only one.
+/// What a person said in the viewer, in the session and in a package of it.
+struct WorkOfAPerson {
+  const char* own;
+  const char* packed;
+  bool (*reads)(const fs::path& file);
+};
+constexpr WorkOfAPerson kWorkOfAPerson[] = {
+    {kCorrectionsOfSession, kPackedCorrections,
+     [](const fs::path& file) { return read_corrections(file).has_value(); }},
+    {kSelectionsOfSession, kPackedSelections,
+     [](const fs::path& file) { return read_selections(file).has_value(); }}};
+
+/// With the session's own file gone or damaged the package may have the only one that is whole.
 Status check_by_hand(const fs::path& package, const fs::path& session) {
-  for (const auto& [own, packed] : {std::pair{kCorrectionsOfSession, kPackedCorrections},
-                                    std::pair{kSelectionsOfSession, kPackedSelections}}) {
+  for (const WorkOfAPerson& work : kWorkOfAPerson) {
     std::error_code unknown;
-    if (fs::exists(package / "data" / packed, unknown) && !fs::exists(session / own, unknown)) {
+    const fs::path own = session / work.own;
+    const fs::path packed = package / "data" / work.packed;
+    if (fs::exists(packed, unknown) &&
+        (!fs::exists(own, unknown) || (!work.reads(own) && work.reads(packed)))) {
       return std::unexpected(
-          lost("the session no longer has " + std::string(own) + " as it was stored", package));
+          lost("the session no longer has " + std::string(work.own) + " as it was stored", package));
     }
   }
   return {};
@@ -238,11 +254,10 @@ Status check_is_not_packed(const fs::path& package, const fs::path& session, con
   if (const Status whole = check_is_whole(package, job); !whole) {
     return whole;
   }
-  return fail(
-      ErrorKind::kUsage,
-      "something lies there already: a package of this session without the stamp that belongs to it, so "
-      "that --update cannot tell its state",
-      package.string(), "choose another folder, or replace it with --force");
+  return fail(ErrorKind::kUsage,
+              "something lies there already: a package of this session without the stamp that belongs to it, "
+              "which tells of what state it is",
+              package.string(), "choose another folder, or replace it with --force");
 }
 
 }  // namespace dubsar

@@ -27,8 +27,8 @@ namespace dubsar {
 /// and the stamp beside it says that it was made of this very session when that held the same scans or fewer,
 /// by whatever version and with whatever options. Not where nothing tells that it is of this session. Reads
 /// every byte of it. Errors: kCancelled; kBadInput where it is of this session and somebody changed it, or
-/// the session has lost since what it holds, a scan or a line of its record, or that record is damaged; those
-/// of opening the session.
+/// the session has lost since what it holds, a scan, what a person said or a line of its record, or that
+/// record is damaged; those of opening the session.
 [[nodiscard]] Result<bool> is_earlier_package(const std::filesystem::path& package,
                                               const std::filesystem::path& session, const StampedWork& now,
                                               JobContext& job);

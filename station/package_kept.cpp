@@ -77,6 +77,12 @@ Result<bool> keep(PackageContent& content, const std::string& name) {
   return written ? Result<bool>(true) : std::unexpected(written.error());
 }
 
+/// Whether the session has lost some of its record. A file may lie in one that has not, too: somebody put it
+/// there.
+bool has_lost_of_its_record(const PackageContent& content) {
+  return !content.source.found().lost.empty() || !damage_of_record(content.store).empty();
+}
+
 /// What lies in the session and has no record any more, the mesh and the signed pages maybe among it.
 Status keep_unrecorded(PackageContent& content) {
   std::map<std::string, std::vector<std::string>> folders;  // and the files in each, by name
@@ -101,10 +107,16 @@ Status keep_unrecorded(PackageContent& content) {
                      "that nobody can tell whether they are what was stored");
   }
   if (!all.empty()) {
+    const std::string files = file_list(all);
     content.lacking.push_back(
-        "The session has no record of these files, which are in kept/ as they lie there, unchecked: " +
-        file_list(all) +
-        ". What else it once had on record, places of scans and signatures maybe among it, is not here.");
+        has_lost_of_its_record(content)
+            ? "The session has no record of these files, which are in kept/ as they lie there, unchecked: " +
+                  files +
+                  ". What else it once had on record, places of scans and signatures maybe among it, is not "
+                  "here."
+            : "These files lie in the session without a record of it, and are in kept/ as they lie there, "
+              "unchecked: " +
+                  files + ".");
   }
   return {};
 }

@@ -14,10 +14,10 @@ namespace dubsar {
 
 namespace {
 
-constexpr std::size_t kSamples = 2000;  ///< of a scan
+constexpr std::size_t kSamples = 500;  ///< of a scan, at most
 /// Cells across the largest scan: as coarse as such samples need to meet, fine enough that two scans which
 /// only cross each other share few.
-constexpr double kCells = 40;
+constexpr double kCells = 20;
 /// Of the samples that share a cell with another scan, for scans to be together, and how many times fewer it
 /// is where their unit is wrong.
 constexpr double kTogether = 0.3;
@@ -28,7 +28,7 @@ constexpr double kFarthest = 1e15;  ///< in cells: no number of a file is to go 
 
 void PosesScale::add(const RangeGrid& grid, const RigidTransform& model_from_scanner) {
   const std::size_t valid = grid.valid_count();
-  const std::size_t step = std::max<std::size_t>(1, valid / kSamples);
+  const std::size_t step = std::max<std::size_t>(1, (valid + kSamples - 1) / kSamples);
   One one;
   one.translation_mm = model_from_scanner.translation_mm;
   Eigen::AlignedBox3d box;

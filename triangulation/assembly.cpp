@@ -104,7 +104,7 @@ Mesh assemble(const std::vector<OwnedScan>& scans, const AssemblyOptions& option
   if (!goes_on(1)) {
     return {};
   }
-  colour_added(draft);
+  colour_added(draft, job);
   part_fans(draft, job);
   if (!goes_on(2)) {
     return {};

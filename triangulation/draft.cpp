@@ -5,6 +5,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
+#include <iterator>
 
 #include "core/dilated.h"
 #include "core/huge_pages.h"
@@ -174,26 +175,27 @@ class Patch {
 
 }  // namespace
 
-void colour_added(Draft& draft) {
+void colour_added(Draft& draft, const JobContext& job) {
   Mesh& mesh = draft.mesh;
-  if (mesh.colours.empty()) {
+  const std::size_t first = draft.first_vertex.back();
+  if (mesh.colours.empty() || mesh.positions.size() == first) {
     return;
   }
-  const std::size_t first = draft.first_vertex.back();
   mesh.colours.resize(mesh.positions.size(), kColourOfNone);
+  std::vector<Triangle> faces;
+  std::ranges::copy_if(mesh.faces, std::back_inserter(faces), [&](const Triangle& f) {
+    return std::max({f[0], f[1], f[2]}) >= first && !is_gone(f);
+  });
   struct Sum {
     std::array<std::uint32_t, 3> of{};
     std::uint32_t count = 0;
   };
   std::vector<std::uint8_t> known(mesh.positions.size() - first, 0);
   // From the rim inwards, a ring of vertices each time.
-  for (bool any = true; any;) {
+  for (bool any = true; any && !job.cancelled();) {
     any = false;
     std::vector<Sum> sums(known.size());
-    for (const Triangle& f : mesh.faces) {
-      if (std::max({f[0], f[1], f[2]}) < first || is_gone(f)) {
-        continue;
-      }
+    for (const Triangle& f : faces) {
       for (const std::uint32_t v : f) {
         if (v < first || known[v - first] != 0) {
           continue;

@@ -44,6 +44,6 @@ struct Draft {
 
 /// What closed seams and gaps takes its colour from what lies round it. After that, no vertex may be added
 /// but as a copy of one.
-void colour_added(Draft& draft);
+void colour_added(Draft& draft, const JobContext& job = {});
 
 }  // namespace dubsar

@@ -8,7 +8,6 @@
 #include <cstdio>
 #include <memory>
 #include <mutex>
-#include <numeric>
 #include <optional>
 #include <set>
 #include <string>
@@ -181,12 +180,16 @@ Result<std::string> device_in(const std::string& device, const std::string& unit
 
 /// Of scans that are not there yet; of those that were taken out there is nothing to say.
 void warn_of_tips(const PinSet& pins, const std::vector<ScanPose>& poses, const std::string& file) {
-  int count = 0;
+  int highest = -1;
   for (const ScanPose& pose : poses) {
-    count = std::max(count, pose.id + 1);
+    highest = std::max(highest, pose.id);
   }
-  std::vector<int> ids(static_cast<std::size_t>(count));
-  std::iota(ids.begin(), ids.end(), 0);
+  std::vector<int> ids;
+  for (const auto& [id, tips] : pins.tips) {
+    if (id <= highest) {
+      ids.push_back(id);
+    }
+  }
   if (const auto fault = tips_of_no_scan(pins, ids, file)) {
     log_warning(fault->line());
   }

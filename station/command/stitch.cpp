@@ -25,6 +25,7 @@
 #include "station/command/outputs.h"
 #include "station/command/scan_set_options.h"
 #include "station/command/stitch_stamp.h"
+#include "station/command/stitch_taken.h"
 #include "station/command/stitch_warnings.h"
 #include "station/mesh_json.h"
 #include "station/offline.h"
@@ -39,54 +40,12 @@ namespace dubsar {
 
 namespace {
 
-/// What a stitcher was given.
-struct Taken {
-  std::size_t scans = 0;
-  std::map<int, std::string> names;   ///< of those, by id
-  bool lacks_poses = false;           ///< of a scan that has not been judged yet: then the rest was not taken
-  std::vector<ScanPose> poses;        ///< of those
-  std::vector<LeftOutScan> left_out;  ///< the others that stand
-
-  void leave_out(LeftOutScan scan) {
-    warn_of(scan);
-    left_out.push_back(std::move(scan));
-  }
-};
-
 /// Why the grid cannot be in the unit that was said; empty when it may be.
 std::string size_fault(const RangeGrid& grid) {
   const RegistrationOptions usual;
   const double scale_mm = surface_scale_mm(grid);
   return scale_mm > 0 ? impossible_size({scale_mm, grid.spacing_mm}, usual.least_size_mm, usual.most_size_mm)
                       : "";
-}
-
-/// What of the set cannot be read. Whether the poses of a file, where there is one, make it a part of the
-/// mesh is not known of a file that they do not name: it may be the one that is lacking of theirs.
-Status leave_out_unread(const ScanSet& set, const std::filesystem::path& path,
-                        const std::vector<ScanPose>* file, Taken& taken) {
-  Result<std::vector<LeftOutScan>> unread = unread_scans(set);
-  if (!unread) {
-    return std::unexpected(unread.error());
-  }
-  const bool some_lack =
-      file != nullptr &&
-      std::cmp_less(taken.scans, std::ranges::count(*file, PoseStatus::kRegistered, &ScanPose::status));
-  for (LeftOutScan& one : *unread) {
-    if (file != nullptr) {
-      StationScan scan;
-      scan.id = one.id;
-      scan.file = one.file;
-      std::error_code not_there;
-      if (!set.is_session()) {
-        scan.read_from = std::filesystem::absolute(path / one.file, not_there).lexically_normal();
-      }
-      const ScanPose* pose = pose_in_file(*file, scan);
-      one.is_missed = pose != nullptr ? pose->status == PoseStatus::kRegistered : some_lack;
-    }
-    taken.leave_out(std::move(one));
-  }
-  return {};
 }
 
 /// What the stitcher refuses is named by its file.
@@ -281,30 +240,6 @@ Result<FileLabel> label_of(const std::string& path, const std::map<int, std::str
   return store ? tablet_label(*store) : std::unexpected(store.error());
 }
 
-/// Those that only repeat another's samples.
-void leave_out_copies(const Stitcher& stitcher, Taken& taken) {
-  for (const ScanCopy& copy : stitcher.copies()) {
-    taken.leave_out(
-        {copy.id, taken.names.at(copy.id), LeftOutScan::Why::kCopy,
-         "it has the very samples of " + taken.names.at(copy.of_id) + ", and counts as the same scan"});
-  }
-  for (const ScanCopy& copy : stitcher.copies()) {
-    taken.names.erase(copy.id);
-  }
-}
-
-/// Their poses need not be wrong.
-void leave_out_without_surface(const Stitcher& stitcher, Taken& taken) {
-  for (const int id : stitcher.without_surface()) {
-    taken.leave_out(
-        {id, taken.names.at(id), LeftOutScan::Why::kNoSurface,
-         "it has no surface, since no three neighbouring samples of its rows and columns make a triangle; "
-         "scan again, nearer or with more of the tablet in view"});
-    taken.names.erase(id);
-    --taken.scans;
-  }
-}
-
 Result<int> stitch_all(const ScanSetArguments& arguments, const StitchStamp& stamp, CommandContext& context) {
   auto stitcher = std::make_unique<Stitcher>();
   const bool has_poses = !arguments.poses.empty() || SessionStore::is_session(arguments.path);
@@ -320,7 +255,6 @@ Result<int> stitch_all(const ScanSetArguments& arguments, const StitchStamp& sta
   if (taken->scans == 0) {
     return bad_input(arguments.path, "no scan is registered", "see dubsar register");
   }
-  taken->scans -= stitcher->copies().size();
   leave_out_copies(*stitcher, *taken);
   leave_out_without_surface(*stitcher, *taken);
   warn_of_places(*stitcher, taken->names);

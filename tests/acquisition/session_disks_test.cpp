@@ -85,6 +85,32 @@ TEST_F(SessionDamageTest, AWriteProtectedFolderIsToldAndCanBeRead) {
   EXPECT_EQ(status, 0);
 }
 
+TEST_F(SessionDamageTest, ABackupThatCannotBeReadKeepsNoWriterOut) {
+  fs::remove(folder_ / "session.sums");
+  fs::create_directory(folder_ / "session.sums");
+  const int status = in_child([&] {
+    for (const auto& entry : fs::recursive_directory_iterator(temporary_.path())) {
+      fs::permissions(entry.path(), entry.is_directory() ? fs::perms(0777) : fs::perms(0666));
+    }
+    fs::permissions(temporary_.path(), fs::perms(0777));
+    fs::permissions(folder_ / "session.backup.sqlite", fs::perms(0000));
+    if (!be_bound_by_rights()) {
+      return 9;
+    }
+    const VerifyReport found = SessionStore::open(folder_, kReadOnly)->verify(job_).value();
+    if (!SessionStore::keep_damaged_records(folder_, found)) {
+      return 1;
+    }
+    return SessionStore::open(folder_) ? 0 : 2;
+  });
+  EXPECT_EQ(status, 0);
+  EXPECT_TRUE(fs::is_directory(folder_ / "session.sums.damaged-1"));
+  EXPECT_TRUE(fs::exists(folder_ / "session.backup.sqlite.damaged-1"));
+  const SessionStore store = SessionStore::open(folder_, kReadOnly).value();
+  expect_content(store);
+  EXPECT_TRUE(store.verify(job_)->ok()) << "backup and list were made anew";
+}
+
 TEST_F(SessionDamageTest, ALogOnAWriteProtectedDiskIsPlayedWhereThereIsRoom) {
   const fs::path folder = temporary_.path() / "logged";
   leave_with_log(folder);

@@ -229,6 +229,24 @@ TEST_F(SessionLossesTest, ACopyThatWentItsOwnWayGivesNothingOfThat) {
   EXPECT_EQ(store.events().value()[5].kind, "own way");
 }
 
+TEST_F(SessionLossesTest, ARowThatTheSessionHasStaysWhereItsGridIsDamaged) {
+  remove_both();
+  { ASSERT_TRUE(SessionStore::open(folder_)); }  // takes the grids in
+  test::flip_byte(folder_ / "grids/001.grid", 1234);
+  const SessionStore store = SessionStore::open_with_copy(folder_, copy_).value();
+  expect_content(store, {1});
+  EXPECT_EQ(store.scans().value()[1].note, "blurred");
+}
+
+TEST_F(SessionLossesTest, ARowComesBackThoughItsGridIsDamaged) {
+  remove_both();
+  test::flip_byte(folder_ / "grids/001.grid", 1234);
+  fs::remove(folder_ / "grids/002.grid");
+  const SessionStore store = SessionStore::open_with_copy(folder_, copy_).value();
+  expect_content(store, {1, 2});
+  EXPECT_EQ(store.scans().value()[1].note, "blurred");
+}
+
 TEST_F(SessionLossesTest, DamagedRecordsAreRefusedBeforeAnythingIsWritten) {
   spoil_both("bench");
   const std::string database = test::text_of_file(database_);

@@ -9,6 +9,7 @@
 #include "formats/sha2.h"
 #include "formats/sign_off_json.h"
 #include "tests/acquisition/session_support.h"
+#include "tests/acquisition/spoil.h"
 #include "tests/support/temporary_folder.h"
 
 namespace dubsar {
@@ -165,6 +166,18 @@ TEST_F(SignedSession, EverySignatureStaysWithWhatWasSigned) {
   EXPECT_TRUE(log->sign_offs[1].holds());
   EXPECT_EQ(**store_->load_document("signed 1 red_map"), first_map);
   EXPECT_TRUE(*store_->load_document("signed 2 checklist"));
+}
+
+TEST_F(SignedSession, TheNumberOfALostSignatureIsNotUsedAgain) {
+  ASSERT_TRUE(sign("A. Reader"));
+  store_.reset();
+  test::spoil_both(folder_.path() / "s", "conclusive");  // its event, and the maps
+  store_.emplace(*SessionStore::open(folder_.path() / "s"));
+  ASSERT_TRUE(read_sign_offs(*store_, job_)->sign_offs.empty());
+  EXPECT_THAT(*store_->lost_rows(), ::testing::Contains("documents row signed 1 red_map"));
+  save_map(true);
+  EXPECT_EQ(sign("B. Reader")->number, 2);
+  EXPECT_EQ(sign("C. Reader")->number, 3);
 }
 
 TEST_F(SignedSession, RefusesWhatIsNoSignature) {

@@ -180,6 +180,30 @@ TEST_F(ExportByHand, ACorrectionThatTheSessionHasLostIsNotReplacedInThePackage) 
   EXPECT_TRUE(fs::exists(bag() / "data/wedges/corrections.json"));
 }
 
+TEST_F(ExportByHand, WhatThePackageHasWholeAndTheSessionDamagedIsNotReplaced) {
+  correct();
+  select();
+  ASSERT_EQ(pack().status, 0);
+  const std::string said = bytes_of(corrections());
+  const std::string selected = bytes_of(selections());
+  for (const fs::path& file : {corrections(), selections()}) {
+    const std::string whole = bytes_of(file);
+    flip_a_bit(file, 40);
+    for (const char* damage : {"a bit", "all of it"}) {
+      const Outcome refused = pack({"--update"});
+      EXPECT_EQ(refused.status, 2) << damage;
+      EXPECT_THAT(refused.err, HasSubstr("the session no longer has " +
+                                         file.lexically_relative(session_).generic_string()));
+      EXPECT_TRUE(packed("wedges/corrections.json") == said);
+      EXPECT_TRUE(packed("wedges/selections.json") == selected);
+      std::ofstream(file, std::ios::binary) << "";
+    }
+    std::ofstream(file, std::ios::binary) << whole;
+  }
+  const Outcome whole_again = pack({"--update"});
+  EXPECT_EQ(whole_again.status, 0) << whole_again.err;
+}
+
 TEST_F(ExportByHand, WhoSignedStandsWhereAnArchivistLooks) {
   ASSERT_EQ(pack().status, 0);
   EXPECT_THAT(info(), HasSubstr("\nDubsar-Signed: unsigned\n"));
@@ -241,9 +265,24 @@ TEST_F(ExportByHand, WithoutARecordWhatLiesInTheSessionGoesAlong) {
   }
   EXPECT_THAT(readme(), AllOf(HasSubstr("kept/mesh/ model.ply: as they lie in the session"),
                               HasSubstr("no checksum was kept"), HasSubstr("letter.txt")));
-  EXPECT_THAT(done.json()["lacking"].dump(), HasSubstr("no record of these files"));
+  EXPECT_THAT(done.json()["lacking"].dump(),
+              AllOf(HasSubstr("no record of these files"), HasSubstr("What else it once had on record")));
   EXPECT_THAT(provenance("provenance/packing").dump(), HasSubstr("kept/export/checklist.html"));
   EXPECT_EQ(run_command({"verify", bag().string()}).status, 0);
+}
+
+TEST_F(ExportByHand, AFileThatSomebodyPutIntoASessionIsNoLossOfItsRecord) {
+  ASSERT_EQ(
+      run_command({"session", "sign", session_.string(), "--name", "A", "--incomplete", "a trial"}).status,
+      0);
+  std::ofstream(session_ / "analysis/my-notes.txt") << "of a reader";
+  const Outcome done = pack();
+  ASSERT_EQ(done.status, 0) << done.err;
+  EXPECT_EQ(packed("kept/analysis/my-notes.txt"), "of a reader");
+  ASSERT_THAT(done.json()["lacking"], SizeIs(1)) << done.json()["lacking"];
+  EXPECT_THAT(done.json()["lacking"].dump(), HasSubstr("analysis/my-notes.txt"));
+  EXPECT_THAT(readme(), AllOf(HasSubstr("lie in the session without a record of it"),
+                              Not(HasSubstr("once had on record"))));
 }
 
 TEST_F(ExportByHand, ASessionThatNeverHadPagesIsNotToldThatTheyAreOld) {

@@ -11,12 +11,10 @@ constexpr EnginePhrase kPhrases[] = {
     // where it is to go
     {": a package of this session, of an earlier state or made otherwise",
      ": ein Paket dieser Sitzung, von einem früheren Stand oder anders gemacht"},
-    {": a package of this session without the stamp that belongs to it, so that --update cannot tell its "
-     "state",
-     ": ein Paket dieser Sitzung ohne den Stempel, der dazu gehört; von welchem Stand es ist, lässt sich "
-     "nicht sagen"},
+    {": a package of this session without the stamp that belongs to it, which tells of what state it is",
+     ": ein Paket dieser Sitzung ohne den Stempel, der dazu gehört und sagt, von welchem Stand es ist"},
     {"bring it up to date with --update, choose another folder, or replace it with --force",
-     "es erneuern lassen, oder einen anderen Ordner wählen"},
+     "einen anderen Ordner wählen"},
     {"something lies there already", "dort liegt schon etwas"},
     {"this is the top of a disk, and a folder cannot take its place",
      "das ist ein ganzer Datenträger, an dessen Stelle kein Ordner treten kann"},

@@ -26,6 +26,8 @@ constexpr std::pair<std::string_view, std::string_view> kInWindow[] = {
     {"; --max-scans allows more", ""},
     {"see what differs (dubsar verify), choose another folder, or replace it with --force",
      "see what differs, or choose another folder"},
+    {"bring it up to date with --update, choose another folder, or replace it with --force",
+     "choose another folder"},
     {", or replace it with --force", ""},
     {"a copy of the session (dubsar verify --repair --from COPY)", "a copy of the session"},
     {"run dubsar register and dubsar plan on it first", "go on and finish first"},

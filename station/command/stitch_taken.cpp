@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#include "station/command/stitch_taken.h"
+
+#include <algorithm>
+#include <system_error>
+#include <utility>
+
+#include "station/offline.h"
+
+namespace dubsar {
+
+Status leave_out_unread(const ScanSet& set, const std::filesystem::path& path,
+                        const std::vector<ScanPose>* file, Taken& taken) {
+  Result<std::vector<LeftOutScan>> unread = unread_scans(set);
+  if (!unread) {
+    return std::unexpected(unread.error());
+  }
+  const bool some_lack =
+      file != nullptr &&
+      std::cmp_less(taken.scans, std::ranges::count(*file, PoseStatus::kRegistered, &ScanPose::status));
+  for (LeftOutScan& one : *unread) {
+    if (file != nullptr) {
+      StationScan scan;
+      scan.id = one.id;
+      scan.file = one.file;
+      std::error_code not_there;
+      if (!set.is_session()) {
+        scan.read_from = std::filesystem::absolute(path / one.file, not_there).lexically_normal();
+      }
+      const ScanPose* pose = pose_in_file(*file, scan);
+      one.is_missed = pose != nullptr ? pose->status == PoseStatus::kRegistered : some_lack;
+    }
+    taken.leave_out(std::move(one));
+  }
+  return {};
+}
+
+void leave_out_copies(const Stitcher& stitcher, Taken& taken) {
+  for (const ScanCopy& copy : stitcher.copies()) {
+    taken.leave_out(
+        {copy.id, taken.names.at(copy.id), LeftOutScan::Why::kCopy,
+         "it has the very samples of " + taken.names.at(copy.of_id) + ", and counts as the same scan"});
+  }
+  for (const ScanCopy& copy : stitcher.copies()) {
+    taken.names.erase(copy.id);
+    --taken.scans;
+  }
+}
+
+void leave_out_without_surface(const Stitcher& stitcher, Taken& taken) {
+  for (const int id : stitcher.without_surface()) {
+    taken.leave_out(
+        {id, taken.names.at(id), LeftOutScan::Why::kNoSurface,
+         "it has no surface, since no three neighbouring samples of its rows and columns make a triangle; "
+         "scan again, nearer or with more of the tablet in view"});
+    taken.names.erase(id);
+    --taken.scans;
+  }
+}
+
+}  // namespace dubsar

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/scan_pose.h"
+#include "station/command/left_out_scans.h"
+#include "station/scan_set.h"
+#include "triangulation/stitcher.h"
+
+namespace dubsar {
+
+/// What a stitcher was given.
+struct Taken {
+  std::size_t scans = 0;
+  std::map<int, std::string> names;   ///< of those, by id
+  bool lacks_poses = false;           ///< of a scan that has not been judged yet: then the rest was not taken
+  std::vector<ScanPose> poses;        ///< of those
+  std::vector<LeftOutScan> left_out;  ///< the others that stand
+
+  void leave_out(LeftOutScan scan) {
+    warn_of(scan);
+    left_out.push_back(std::move(scan));
+  }
+};
+
+/// What of the set cannot be read. Whether the poses of a file, where there is one, make it a part of the
+/// mesh is not known of a file that they do not name: it may be the one that is lacking of theirs.
+[[nodiscard]] Status leave_out_unread(const ScanSet& set, const std::filesystem::path& path,
+                                      const std::vector<ScanPose>* file, Taken& taken);
+/// Those that only repeat another's samples.
+void leave_out_copies(const Stitcher& stitcher, Taken& taken);
+/// Those without a triangle: their poses need not be wrong.
+void leave_out_without_surface(const Stitcher& stitcher, Taken& taken);
+
+}  // namespace dubsar
