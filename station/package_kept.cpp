@@ -83,11 +83,12 @@ bool has_lost_of_its_record(const PackageContent& content) {
   return !content.source.found().lost.empty() || !damage_of_record(content.store).empty();
 }
 
-/// What lies in the session and has no record any more, the mesh and the signed pages maybe among it.
-Status keep_unrecorded(PackageContent& content) {
-  std::map<std::string, std::vector<std::string>> folders;  // and the files in each, by name
-  std::vector<std::string> all;
-  for (const std::string& name : content.source.found().unrecorded) {
+/// Packs what was made of scans among these files of the session, a person's own work apart. Where each went,
+/// by folder of the package.
+Result<std::map<std::string, std::vector<std::string>>> keep_derived(PackageContent& content,
+                                                                     const std::vector<std::string>& names) {
+  std::map<std::string, std::vector<std::string>> folders;
+  for (const std::string& name : names) {
     if (!is_derived(name) || is_by_hand(name)) {
       continue;
     }
@@ -96,13 +97,27 @@ Status keep_unrecorded(PackageContent& content) {
       return std::unexpected(kept.error());
     }
     if (*kept) {
-      folders[kept_folder(name)].push_back(fs::path(name).filename().string());
-      all.push_back(name);
+      folders[kept_folder(name)].push_back(name);
     }
   }
-  for (const auto& [folder, files] : folders) {
+  return folders;
+}
+
+/// What lies in the session and has no record any more, the mesh and the signed pages maybe among it.
+Status keep_unrecorded(PackageContent& content) {
+  const auto folders = keep_derived(content, content.source.found().unrecorded);
+  if (!folders) {
+    return std::unexpected(folders.error());
+  }
+  std::vector<std::string> all;
+  for (const auto& [folder, files] : *folders) {
+    std::vector<std::string> names;
+    for (const std::string& file : files) {
+      names.push_back(fs::path(file).filename().string());
+      all.push_back(file);
+    }
     content.list(folder,
-                 file_list(files) +
+                 file_list(names) +
                      ": as they lie in the session, which has no record of them: no checksum was kept, so "
                      "that nobody can tell whether they are what was stored");
   }
@@ -127,20 +142,11 @@ Status keep_what_was_made_of_lost(PackageContent& content, const std::vector<Sto
   if (!words) {
     return std::unexpected(words.error());
   }
-  std::set<std::string> folders;
-  for (const std::string& name : content.source.found().whole) {
-    if (!is_derived(name) || is_by_hand(name)) {
-      continue;
-    }
-    const Result<bool> kept = keep(content, name);
-    if (!kept) {
-      return std::unexpected(kept.error());
-    }
-    if (*kept) {
-      folders.insert(kept_folder(name));
-    }
+  const auto folders = keep_derived(content, content.source.found().whole);
+  if (!folders) {
+    return std::unexpected(folders.error());
   }
-  for (const std::string& folder : folders) {
+  for (const auto& [folder, files] : *folders) {
     content.list(folder, kind_of(folder) + *words);
   }
   const bool some_remain = !content.results().poses.empty();
@@ -148,7 +154,7 @@ Status keep_what_was_made_of_lost(PackageContent& content, const std::vector<Sto
       "Without " + listed(lost) +
       (some_remain ? " model, wedges, pictures, verdict and report are of the scans that remain"
                    : " there is nothing that a model could be made of, and verdict and report say so") +
-      (folders.empty() ? "." : "; what was made while they could be read is in kept/."));
+      (folders->empty() ? "." : "; what was made while they could be read is in kept/."));
   return {};
 }
 

@@ -7,6 +7,8 @@
 #include <string>
 
 #include "acquisition/session_store.h"
+#include "formats/sha2.h"
+#include "formats/sign_off_json.h"
 #include "tests/acquisition/session_damage_support.h"
 #include "tests/acquisition/spoil.h"
 
@@ -263,6 +265,28 @@ TEST_F(SessionLossesTest, DamagedRecordsAreRefusedBeforeAnythingIsWritten) {
   { ASSERT_TRUE(SessionStore::open(folder_)); }
   test::flip_byte(folder_ / "grids/002.grid", 1234);
   EXPECT_TRUE(SessionStore::open(folder_, kReadWrite, SessionStore::OnDamage::kRefuse));
+}
+
+TEST_F(SessionLossesTest, ALostSignOffTakesNoNumberOfAnother) {
+  const auto sign = [&](const char* name) {
+    SignOff made;
+    made.number = 1;
+    made.name = name;
+    made.when = "2026-01-02T03:04:05Z";
+    made.program = "Dubsar 0.1.0";
+    made.digest = sha256_hex("");
+    return SessionStore::open(folder_)->append_event("signed", recorded_sign_off_to_json({made, ""}));
+  };
+  ASSERT_TRUE(sign("A. Reader"));
+  ASSERT_TRUE(SessionStore::open(folder_)->append_event("looked at"));  // which both have
+  fs::remove_all(copy_);
+  fs::copy(folder_, copy_, fs::copy_options::recursive);
+  spoil_both("A. Reader");
+  ASSERT_TRUE(sign("B. Reader"));
+  const SessionStore store = SessionStore::open_with_copy(folder_, copy_).value();
+  ASSERT_TRUE(store.opening().no_use_of_copy);
+  EXPECT_THAT(store.opening().no_use_of_copy->line(), HasSubstr("sign-off 1 was lost"));
+  EXPECT_THAT(store.opening().brought_back, IsEmpty());
 }
 
 }  // namespace

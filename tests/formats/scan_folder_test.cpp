@@ -133,6 +133,12 @@ TEST(ScanFiles, ProseIsNoScan) {
   const ScratchFolder folder;
   ASSERT_TRUE(write_file_atomically(folder / "notes.txt", "Scanned on a Monday.\nTen scans.\n"));
   ASSERT_TRUE(write_file_atomically(folder / "a.asc", "\xEF\xBB\xBF" + points(kLeastPointLines)));
+  std::string report;  // a table far down in a text
+  for (int line = 0; line < 80; ++line) {
+    report += "A word of the report.\n";
+  }
+  ASSERT_TRUE(write_file_atomically(folder / "report.txt", report + points(kLeastPointLines)));
+  EXPECT_FALSE(looks_like_scan(folder / "report.txt"));
   EXPECT_FALSE(looks_like_scan(folder / "notes.txt"));
   EXPECT_TRUE(looks_like_scan(folder / "a.asc"));
   EXPECT_FALSE(looks_like_scan(folder / "none.ply"));

@@ -275,6 +275,16 @@ TEST(PointText, DecimalCommasAreTold) {
   }
 }
 
+TEST(PointText, ACommaBesideNumbersWithPointsIsASeparator) {
+  const auto points = [](const std::string& text) {
+    const Result<std::vector<ScanData>> read = read_scan_bytes(text, "a.xyz");
+    return read ? std::get<PointCloud>(read->front()).points : std::vector<Eigen::Vector3f>{};
+  };
+  const auto plain = points("0.1 0.2 1.05 128\n0.3 0.2 1.25 7\n0.3 0.4 1.5 9\n");
+  ASSERT_EQ(plain.size(), 3U);
+  EXPECT_EQ(points("0.1 0.2 1.05,128\n0.3 0.2 1.25,7\n0.3 0.4 1.5,9\n"), plain);
+}
+
 TEST(PointText, CommasThatMayBeEitherAreRefused) {
   const auto line = [](const std::string& text) { return line_of(read_scan_bytes(text, "a.xyz")); };
   EXPECT_THAT(

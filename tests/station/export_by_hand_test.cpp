@@ -33,14 +33,8 @@ using ::testing::MatchesRegex;
 using ::testing::Not;
 using ::testing::SizeIs;
 
-/// A copy of the session for each test. Nobody needs its package.
-class ExportByHand : public Export {
+class ExportByHand : public ExportOfACopy {
  protected:
-  static void SetUpTestSuite() { scan_session(); }
-  void SetUp() override {
-    session_ = at(std::string(::testing::UnitTest::GetInstance()->current_test_info()->name()));
-    fs::copy(at("session"), session_, fs::copy_options::recursive);
-  }
   [[nodiscard]] Outcome pack(const std::vector<std::string>& more = {}) const {
     std::vector<std::string> words{"export",
                                    session_.string(),
@@ -52,21 +46,7 @@ class ExportByHand : public Export {
     words.insert(words.end(), more.begin(), more.end());
     return run_command(words);
   }
-  [[nodiscard]] fs::path bag() const { return session_.string() + ".bag"; }
-  [[nodiscard]] std::string packed(const std::string& file) const { return bytes_of(bag() / "data" / file); }
   [[nodiscard]] std::string info() const { return bytes_of(bag() / "bag-info.txt"); }
-  /// With what was broken into lines put together again.
-  [[nodiscard]] std::string readme() const {
-    std::string out;
-    for (const char c : packed("README.txt")) {
-      if (c != '\n' && c != ' ') {
-        out += c;
-      } else if (!out.ends_with(' ')) {
-        out += ' ';
-      }
-    }
-    return out;
-  }
   [[nodiscard]] nlohmann::json provenance(const std::string& id) const {
     const auto json = nlohmann::json::parse(packed("provenance.jsonld"), nullptr, false);
     for (const auto& node : json["@graph"]) {
@@ -89,8 +69,6 @@ class ExportByHand : public Export {
   }
   [[nodiscard]] fs::path corrections() const { return session_ / "analysis/wedges.corrections.json"; }
   [[nodiscard]] fs::path selections() const { return session_ / "analysis/selections.json"; }
-
-  fs::path session_;
 };
 
 /// As a disk that fails does.

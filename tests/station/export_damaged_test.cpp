@@ -28,34 +28,12 @@ using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-/// A copy of the session, to be harmed. Nobody needs its package.
-class ExportDamaged : public Export {
+class ExportDamaged : public ExportOfACopy {
  protected:
-  static void SetUpTestSuite() { scan_session(); }
-  void SetUp() override {
-    session_ = at(std::string(::testing::UnitTest::GetInstance()->current_test_info()->name()));
-    fs::copy(at("session"), session_, fs::copy_options::recursive);
-  }
   [[nodiscard]] Outcome pack() const {
     return run_command({"export", session_.string(), "--to", bag().string(), "--json", "--without",
                         "renderings,features,grid-ply,wedges"});
   }
-  [[nodiscard]] fs::path bag() const { return session_.string() + ".bag"; }
-  [[nodiscard]] std::string packed(const std::string& file) const { return bytes_of(bag() / "data" / file); }
-  /// With what was broken into lines put together again.
-  [[nodiscard]] std::string readme() const {
-    std::string out;
-    for (const char c : packed("README.txt")) {
-      if (c != '\n' && c != ' ') {
-        out += c;
-      } else if (!out.ends_with(' ')) {
-        out += ' ';
-      }
-    }
-    return out;
-  }
-
-  fs::path session_;
 };
 
 TEST_F(ExportDamaged, RowsOfAScanThatWasNotOverAreThere) {

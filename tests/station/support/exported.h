@@ -62,4 +62,32 @@ class Export : public ::testing::Test {
   inline static test::Outcome whole_;
 };
 
+/// A copy of the session for each test, to be changed or harmed. Nobody needs the package of the suite.
+class ExportOfACopy : public Export {
+ protected:
+  static void SetUpTestSuite() { scan_session(); }
+  void SetUp() override {
+    session_ = at(std::string(::testing::UnitTest::GetInstance()->current_test_info()->name()));
+    std::filesystem::copy(at("session"), session_, std::filesystem::copy_options::recursive);
+  }
+  [[nodiscard]] std::filesystem::path bag() const { return session_.string() + ".bag"; }
+  [[nodiscard]] std::string packed(const std::string& file) const {
+    return test::bytes_of(bag() / "data" / file);
+  }
+  /// With what was broken into lines put together again.
+  [[nodiscard]] std::string readme() const {
+    std::string out;
+    for (const char c : packed("README.txt")) {
+      if (c != '\n' && c != ' ') {
+        out += c;
+      } else if (!out.ends_with(' ')) {
+        out += ' ';
+      }
+    }
+    return out;
+  }
+
+  std::filesystem::path session_;
+};
+
 }  // namespace dubsar
