@@ -15,7 +15,6 @@ namespace {
 using Eigen::Vector3f;
 
 constexpr std::uint8_t kBoth = kCellFirst | kCellSecond;
-constexpr std::size_t kGrain = 2048;
 constexpr std::size_t kContestGrain = 64;  ///< nodes: where there is a contest, each is much work
 
 /// Room for the averaged samples of one scan after another [rows*cols]. Only those of cells at stake are
@@ -144,58 +143,6 @@ std::vector<std::uint32_t> uncovered_samples(const std::vector<OwnedScan>& scans
 }
 
 }  // namespace
-
-std::vector<std::uint8_t> wanted_samples(const std::vector<OwnedScan>& scans, std::size_t self, int least) {
-  const OwnedScan& scan = scans[self];
-  const StitchSurface& s = *scan.surface;
-  const Lattice& lattice = s.lattice;
-  std::vector<float> vote(lattice.size(), 0);  // 1: it wants the place, -1: it leaves it to another
-  parallel_chunks(vote.size(), kGrain, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t node = begin; node < end; ++node) {
-      if (s.node_sample[node] < 0) {
-        continue;
-      }
-      bool best = true;
-      for (std::size_t k = 0; best && k < scan.pairs.size(); ++k) {
-        const std::int32_t j = scan.pairs[k]->match[node];
-        if (j >= 0) {
-          const StitchSurface& other = *scans[scan.other[k]].surface;
-          const float theirs = other.score[other.lattice.node_of(static_cast<std::size_t>(j))];
-          best = s.score[node] > theirs || (s.score[node] == theirs && self < scan.other[k]);
-        }
-      }
-      vote[node] = best ? 1.0F : -1.0F;
-    }
-  });
-  // For a sample the four nodes around it count, by how near they are.
-  const auto before = [](int at) { return (at + Lattice::kNodeSide / 2) / Lattice::kNodeSide - 1; };
-  const auto past = [&](int at) {
-    return (static_cast<float>(at) + 0.5F) / Lattice::kNodeSide - 0.5F - static_cast<float>(before(at));
-  };
-  std::vector<std::uint8_t> out(s.points.size(), 0);
-  parallel_for_each_index(
-      static_cast<std::size_t>(lattice.rows),
-      [&](std::size_t r) {
-        const int row = static_cast<int>(r);
-        std::vector<float> votes(static_cast<std::size_t>(lattice.node_cols) + 2,
-                                 0.0F);  // none at either end
-        for (const int node_row : {before(row), before(row) + 1}) {
-          const float weight = node_row == before(row) ? 1.0F - past(row) : past(row);
-          for (int c = 0; node_row >= 0 && node_row < lattice.node_rows && c < lattice.node_cols; ++c) {
-            votes[static_cast<std::size_t>(c) + 1] += weight * vote[lattice.node(node_row, c)];
-          }
-        }
-        for (int col = 0; col < lattice.cols; ++col) {
-          const std::size_t i = r * static_cast<std::size_t>(lattice.cols) + static_cast<std::size_t>(col);
-          const auto k = static_cast<std::size_t>(before(col) + 1);
-          const float sum = (1.0F - past(col)) * votes[k] + past(col) * votes[k + 1];
-          out[i] = s.usable[i] != 0 && sum > 0 ? 1 : 0;
-        }
-      },
-      16);
-  drop_scattered(out, {}, lattice, least);
-  return out;
-}
 
 bool assign_owners(std::vector<OwnedScan>& scans, const GridTriangulationOptions& grid,
                    const OwnershipOptions& options, const JobContext& job) {

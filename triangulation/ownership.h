@@ -10,12 +10,6 @@
 
 namespace dubsar {
 
-/// 1 for the samples around which this scan would be primary: no pair has a better score; of equals the lower
-/// position. Those of which fewer than `least` lie beside each other are none: no patch would come of them.
-/// Looks at surfaces and pairs only.
-[[nodiscard]] std::vector<std::uint8_t> wanted_samples(const std::vector<OwnedScan>& scans, std::size_t self,
-                                                       int least);
-
 /// Gives each place of the surface one primary scan, the view closest to the normal there (seed 001, 4), and
 /// keeps that scan's samples and triangles: patches of single scans that nowhere overlap, with a seam about
 /// one spacing wide between them. No place that any scan covers with triangles is left without a patch, but

@@ -14,6 +14,7 @@
 #include "core/parallel.h"
 #include "triangulation/assembly.h"
 #include "triangulation/patch_shape.h"
+#include "triangulation/primary_votes.h"
 #include "triangulation/scan_surfaces.h"
 #include "triangulation/stitch_entry.h"
 
@@ -174,8 +175,8 @@ struct Stitcher::Impl {
     return true;
   }
 
-  /// All scans with their pairs; which samples they want and where these go is worked out for those whose
-  /// pairs have changed. Empty when cancelled.
+  /// All scans with their pairs and which samples they want; where these go is worked out for those that are
+  /// new or whose pairs have changed. Empty when cancelled.
   [[nodiscard]] std::vector<OwnedScan> owned_scans(const JobContext& job) {
     std::vector<OwnedScan> scans;
     std::map<PassKey, std::size_t> position;
@@ -193,25 +194,30 @@ struct Stitcher::Impl {
         scan.other_surface.push_back(&entries.at(other_key).surface);
       }
     }
+    const std::vector<std::vector<float>> votes = primary_votes(scans, job);
+    if (votes.size() != scans.size()) {
+      return {};
+    }
     std::size_t at = 0;
     for (auto& [key, entry] : entries) {
       if (job.cancelled()) {
         return {};
       }
       job.progress("average samples", static_cast<double>(at) / static_cast<double>(scans.size()));
+      // Whom it leaves a place to may change with scans that it has no pair in.
+      entry.wanted = wanted_samples(entry.surface, votes[at], options.ownership.least_wanted_patch_samples);
       if (!entry.changed.empty()) {
         const Lattice& lattice = entry.surface.lattice;
-        entry.wanted = wanted_samples(scans, at, options.ownership.least_wanted_patch_samples);
         // Samples of a node may go by the pair of one beside it.
         const std::vector<std::uint8_t> anew =
             dilated(entry.changed, lattice.node_rows, lattice.node_cols, 1);
         entry.fused.forget_if([&](std::uint32_t i) { return anew[lattice.node_of(i)] != 0; });
-        scans[at].fuse(unfused(entry), job);
-        if (job.cancelled()) {
-          return {};
-        }
-        entry.changed.clear();
       }
+      scans[at].fuse(unfused(entry), job);
+      if (job.cancelled()) {
+        return {};
+      }
+      entry.changed.clear();
       // What an earlier mesh needed besides must not show in the next.
       entry.fused.forget_if([&](std::uint32_t i) { return entry.wanted[i] == 0; });
       ++at;
