@@ -69,12 +69,16 @@ Mesh assemble(const std::vector<OwnedScan>& scans, const AssemblyOptions& option
   }
   laid();
   ClosingOptions closing{options.seam, options.gap};
-  closing.gap.seen = [&scans](const Vector3f& p_mm, float radius_mm) {
-    return std::any_of(scans.begin(), scans.end(), [&](const OwnedScan& scan) {
+  closing.gap.samples_near = [&scans](const Vector3f& p_mm, float radius_mm) {
+    std::vector<Vector3f> found;
+    for (const OwnedScan& scan : scans) {
       const StitchSurface& s = *scan.surface;
       const Vector3f p = (s.scanner_from_model * p_mm.cast<double>()).cast<float>();
-      return s.lookup->nearest(p, radius_mm) >= 0;
-    });
+      if (const GridLookup::Found nearest = s.lookup->find_nearest(p, radius_mm); nearest.sample >= 0) {
+        found.push_back((s.scanner_from_model.inverse() * nearest.point_mm.cast<double>()).cast<float>());
+      }
+    }
+    return found;
   };
   job.progress("close seams", 0.0);
   close_patches(draft, closing, job);

@@ -119,8 +119,9 @@ Leftover left_open(const Front& front, const ClosingOptions& options) {
     left.others.insert(left.others.end(), {edge.a, edge.b});
   }
   OuterRims outer_rims(sheet);
+  const LooseVertices loose(sheet);
   for (Front::Walk& walk : front.walks()) {
-    const bool gap = !walk.leaves && is_gap(sheet, walk.vertices, options.gap);
+    const bool gap = !walk.leaves && is_gap(sheet, walk.vertices, loose, options.gap);
     // Whether it is the outside of a piece shows in the next round, which sees more of it.
     const bool outside = gap && outer_rims.contain(walk.vertices);
     if (has_room(sheet, walk.vertices, options.seam) && !outside) {

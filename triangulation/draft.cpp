@@ -83,7 +83,9 @@ class Patch {
       faces_[row + 1] += faces_[row];
     }
   }
-  [[nodiscard]] std::uint32_t vertex_count() const { return vertices_.back(); }
+  [[nodiscard]] std::uint32_t vertex_count() const {
+    return vertices_.back() + static_cast<std::uint32_t>(scan_->loose.size());
+  }
   [[nodiscard]] std::uint32_t face_count() const { return faces_.back(); }
 
   void lay(std::uint32_t first_vertex, std::uint32_t first_face, Draft& draft) const {
@@ -96,26 +98,33 @@ class Patch {
     const std::vector<std::uint8_t> near_rim = dilated(rim, lattice_->rows, lattice_->cols, kNearRimSamples);
     std::vector<std::uint32_t> vertex_of(scan_->kept.size());
     Mesh& mesh = draft.mesh;
+    const auto lay_vertex = [&](std::uint32_t v, std::size_t i) {
+      const std::size_t at = fused.slot[i];
+      mesh.positions[v] = fused.points[at];
+      mesh.normals[v] = s.normal(i);
+      mesh.reliability[v] = fused.reliability[at];
+      mesh.sigma_mm[v] = fused.sigma_mm[at];
+      mesh.scans[v] = fused.scans[at];
+      mesh.flags[v] = fused.sparse[at] != 0 ? kVertexSparse : 0;
+      if (!mesh.colours.empty()) {
+        mesh.colours[v] = s.colours.empty() ? kColourOfNone : s.colours[i];
+      }
+    };
     each_row([&](std::size_t row) {
       std::uint32_t v = first_vertex + vertices_[row];
       for (std::size_t i = row * width(); i < (row + 1) * width(); ++i) {
-        if (scan_->kept[i] == 0) {
-          continue;
+        if (scan_->kept[i] != 0) {
+          lay_vertex(v, i);
+          draft.near_rim[v] = rim[i] != 0 ? Draft::kAtRim : near_rim[i];
+          vertex_of[i] = v++;
         }
-        const std::size_t at = fused.slot[i];
-        mesh.positions[v] = fused.points[at];
-        mesh.normals[v] = s.normal(i);
-        mesh.reliability[v] = fused.reliability[at];
-        mesh.sigma_mm[v] = fused.sigma_mm[at];
-        mesh.scans[v] = fused.scans[at];
-        mesh.flags[v] = fused.sparse[at] != 0 ? kVertexSparse : 0;
-        if (!mesh.colours.empty()) {
-          mesh.colours[v] = s.colours.empty() ? kColourOfNone : s.colours[i];
-        }
-        draft.near_rim[v] = rim[i] != 0 ? Draft::kAtRim : near_rim[i];
-        vertex_of[i] = v++;
       }
     });
+    for (std::size_t k = 0; k < scan_->loose.size(); ++k) {
+      const std::uint32_t v = first_vertex + vertices_.back() + static_cast<std::uint32_t>(k);
+      lay_vertex(v, scan_->loose[k]);
+      draft.near_rim[v] = Draft::kLoose;
+    }
     const GridSurface g = s.surface();
     each_row([&](std::size_t row) {
       std::uint32_t f = first_face + faces_[row];

@@ -20,12 +20,14 @@ struct Draft {
   std::vector<std::uint32_t> first_face;    ///< [scans + 1]
   std::vector<float> patch_spacing_mm;      ///< [scans]
   std::vector<float> added_spacing_mm;      ///< of the vertices after the last patch
-  /// [V] kAtRim at the rim of a patch, 1 within a few samples of it, and for what was added: elsewhere faces
-  /// close around the vertex as those of a grid do.
+  /// [V] kAtRim at the rim of a patch, 1 within a few samples of it, and for what was added; kLoose for what
+  /// came without a face, as long as none that it got was taken away: elsewhere faces close around the vertex
+  /// as those of a grid do.
   std::vector<std::uint8_t> near_rim;
 
   [[nodiscard]] float spacing_mm(std::uint32_t vertex) const;
   static constexpr std::uint8_t kAtRim = 2;
+  static constexpr std::uint8_t kLoose = 3;
   /// The patch (1 for the first) within which a face lies, away from the rim; 0: none. Faces of one patch all
   /// look at the scanner that they come from, each at a place of its own: they cannot cut each other. That
   /// holds where whole fans of grid triangles were checked; at rims and beside bridged drop-outs it may not.
@@ -37,9 +39,9 @@ struct Draft {
 }
 
 /// The patches that assign_owners() left: vertices are the kept samples at their averaged places, faces their
-/// triangles, and two more where a grid lacks one lone sample. Each has the colour that its own scan saw:
-/// scans are lit from elsewhere each, and averages of such colours are none. Of a job that is cancelled some
-/// are not laid, and the draft is no good.
+/// triangles, and two more where a grid lacks one lone sample. Loose samples are vertices without a face.
+/// Each has the colour that its own scan saw: scans are lit from elsewhere each, and averages of such colours
+/// are none. Of a job that is cancelled some are not laid, and the draft is no good.
 [[nodiscard]] Draft lay_patches(const std::vector<OwnedScan>& scans, const JobContext& job = {});
 
 /// What closed seams and gaps takes its colour from what lies round it. After that, no vertex may be added

@@ -22,6 +22,8 @@ struct Sheet {
   std::vector<float> spacing_mm;           ///< µ of the scan that a vertex comes from
   std::vector<float> sigma_mm;             ///< standard deviation along the normal
   std::vector<Triangle> faces;
+  /// 1: measured and without a face, gaps may be closed of it; 2: sparse, clay is missing there; or empty.
+  std::vector<std::uint8_t> loose;
   /// 0 for vertices of which some faces are elsewhere: an edge between two of them is not open, whatever it
   /// looks like. Empty: all faces are here.
   std::vector<std::uint8_t> whole;
@@ -78,7 +80,7 @@ class Front {
 
   [[nodiscard]] std::vector<Edge> open_edges() const;
   [[nodiscard]] bool is_open(std::uint32_t a, std::uint32_t b) const;
-  /// On an open edge, or a vertex without any face that add_vertex() brought.
+  /// On an open edge, or a vertex without any face that add_vertex() or offer_vertex() brought.
   [[nodiscard]] bool on_front(std::uint32_t v) const;
   /// Then or earlier.
   [[nodiscard]] bool was_on_front(std::uint32_t v) const { return find(v) != nullptr; }
@@ -91,6 +93,8 @@ class Front {
   void add_face(const Triangle& f);
   std::uint32_t add_vertex(const Eigen::Vector3f& position_mm, const Eigen::Vector3f& normal,
                            float spacing_mm, float sigma_mm);
+  /// Brings in a vertex of the sheet that has no face.
+  void offer_vertex(std::uint32_t v) { links(v).free = true; }
 
   /// A vertex that is, or was, on the front.
   struct Links {

@@ -6,7 +6,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
+#include "triangulation/loose_vertices.h"
+#include "triangulation/opening_plane.h"
 #include "triangulation/outer_rims.h"
 
 namespace dubsar {
@@ -20,87 +23,62 @@ constexpr double kSeenWithinSpacings = 2.5;
 /// Openings with more vertices than this are outer boundaries, not gaps.
 constexpr std::size_t kMostVertices = 400;
 
-float mean_spacing_mm(const Sheet& sheet, const std::vector<std::uint32_t>& opening) {
-  double sum = 0;
-  for (const std::uint32_t v : opening) {
-    sum += static_cast<double>(sheet.spacing_mm[v]);
-  }
-  return opening.empty() ? 0.0F : static_cast<float>(sum / static_cast<double>(opening.size()));
-}
+/// Interpolated vertices stay so far from measured ones and from the rim.
+constexpr float kApartSpacings = 0.6F;
 
-bool inside_polygon(const std::vector<Vector2f>& polygon, const Vector2f& p) {
-  bool inside = false;
-  for (std::size_t i = 0, j = polygon.size() - 1; i < polygon.size(); j = i++) {
-    const Vector2f& a = polygon[i];
-    const Vector2f& b = polygon[j];
-    if ((a.y() > p.y()) != (b.y() > p.y()) &&
-        p.x() < (b.x() - a.x()) * (p.y() - a.y()) / (b.y() - a.y()) + a.x()) {
-      inside = !inside;
+/// A loose vertex in an opening.
+struct Measured {
+  std::uint32_t vertex = 0;
+  Vector2f place{0, 0};
+  float above = 0;     ///< where the rim would put it
+  bool taken = false;  ///< to close the opening with: others lie next to one that is
+};
+
+/// The surest first.
+std::vector<Measured> measured_inside(const Sheet& sheet, const OpeningPlane& plane,
+                                      const LooseVertices& loose) {
+  constexpr float kMostAboveSpacings = 2.0F;
+  constexpr float kLeastCos = 0.4F;
+  std::vector<Measured> found;
+  if (loose.empty()) {
+    return found;
+  }
+  const float mu = plane.spacing_mm();
+  const Vector2f middle = 0.5F * (plane.low() + plane.high());
+  const float reach_mm = 0.5F * (plane.high() - plane.low()).norm();
+  for (const std::uint32_t v : loose.near(plane.at(middle, 0), reach_mm + kMostAboveSpacings * mu)) {
+    const Vector2f place = plane.place_of(sheet.positions[v]);
+    if (!plane.encloses(place) || sheet.normals[v].dot(plane.normal()) < kLeastCos) {
+      continue;
+    }
+    const float above = plane.height_of(sheet.positions[v]) - plane.interpolate(place).height;
+    if (std::abs(above) < kMostAboveSpacings * mu) {
+      found.push_back({v, place, above, false});
     }
   }
-  return inside;
+  std::ranges::stable_sort(found, std::less<>(), [&](const Measured& m) { return sheet.sigma_mm[m.vertex]; });
+  const float apart2 = kApartSpacings * kApartSpacings * mu * mu;
+  for (Measured& m : found) {
+    m.taken =
+        plane.distance2_to_edges(m.place) > apart2 && std::ranges::none_of(found, [&](const Measured& o) {
+          return o.taken && (o.place - m.place).squaredNorm() < apart2;
+        });
+  }
+  return found;
 }
 
-/// Mean value coordinates of p for the polygon's corners (Floater 2003); they add up to 1.
-std::vector<double> mean_value_coordinates(const std::vector<Vector2f>& polygon, const Vector2f& p) {
-  const std::size_t n = polygon.size();
-  std::vector<double> weights(n);
-  double sum = 0;
-  const auto half_tangent = [&](std::size_t i, std::size_t j) {
-    const Vector2f a = polygon[i] - p;
-    const Vector2f b = polygon[j] - p;
-    const double lengths = static_cast<double>(a.norm()) * b.norm();
-    const double cosine = a.dot(b) / std::max(lengths, 1e-20);
-    const double sine = static_cast<double>(a.x() * b.y() - a.y() * b.x()) / std::max(lengths, 1e-20);
-    return std::abs(sine) < 1e-12 ? 0.0 : (1.0 - cosine) / sine;
-  };
-  for (std::size_t i = 0; i < n; ++i) {
-    const double r = std::max<double>((polygon[i] - p).norm(), 1e-9);
-    weights[i] = (half_tangent((i + n - 1) % n, i) + half_tangent(i, (i + 1) % n)) / r;
-    sum += weights[i];
+/// How far what was measured beside it draws an interpolated place off the height that the rim gives it.
+float drawn_by(const std::vector<Measured>& measured, const Vector2f& p, float mu) {
+  float sum = 0;
+  float weights = 1;
+  for (const Measured& m : measured) {
+    if (m.taken) {
+      const float weight = mu * mu / std::max((m.place - p).squaredNorm(), 1e-6F * mu * mu);
+      sum += weight * m.above;
+      weights += weight;
+    }
   }
-  for (double& weight : weights) {
-    weight = std::abs(sum) < 1e-12 ? 1.0 / static_cast<double>(n) : weight / sum;
-  }
-  return weights;
-}
-
-/// What is known around an opening, in its mean plane, mm.
-struct Rim {
-  std::vector<Vector2f> places;
-  std::vector<float> heights;
-  std::vector<Vector2f> slopes;  ///< of the clay, by the normals
-  std::vector<float> variances;  ///< of the heights
-};
-
-struct Interpolated {
-  float height = 0;
-  float sigma = 0;
-};
-
-/// Between the heights of the rim, which may all be off the same way, by the poses of scans. How far clay
-/// that nobody saw lies from there is told by how it goes into the opening: where it bends evenly it lies
-/// half way between the interpolated height and the planes that touch it at the rim, and at a step one of
-/// these planes is right. What noise makes of a plane through samples two spacings apart is taken off.
-Interpolated interpolate(const Rim& rim, const Vector2f& p, float spacing_mm) {
-  constexpr double kOfBend = 0.5;
-  const std::vector<double> shares = mean_value_coordinates(rim.places, p);
-  double height = 0;
-  for (std::size_t i = 0; i < shares.size(); ++i) {
-    height += shares[i] * rim.heights[i];
-  }
-  double bend2 = 0, noise2 = 0, sum = 0;
-  for (std::size_t i = 0; i < shares.size(); ++i) {
-    const double share = std::abs(shares[i]);
-    const Vector2f away = p - rim.places[i];
-    const double off = rim.heights[i] + rim.slopes[i].dot(away) - height;
-    const double steps2 = away.squaredNorm() / (spacing_mm * spacing_mm);
-    bend2 += share * (off * off - 0.5 * steps2 * rim.variances[i]);
-    noise2 += share * rim.variances[i];
-    sum += share;
-  }
-  const double variance = noise2 + kOfBend * kOfBend * std::max(bend2, 0.0);
-  return {static_cast<float>(height), static_cast<float>(std::sqrt(variance / std::max(sum, 1e-12)))};
+  return sum / weights;
 }
 
 }  // namespace
@@ -127,22 +105,30 @@ namespace {
 /// Looked at in the middle of the opening and half way from there to each of its vertices.
 bool seen_all_over(const Sheet& sheet, const std::vector<std::uint32_t>& opening, double spacing_mm,
                    const GapFillOptions& options) {
-  if (!options.seen) {
-    return false;
-  }
   Vector3f middle = Vector3f::Zero();
   for (const std::uint32_t v : opening) {
     middle += sheet.positions[v] / static_cast<float>(opening.size());
   }
   const auto radius_mm = static_cast<float>(kSeenWithinSpacings * spacing_mm);
-  return options.seen(middle, radius_mm) && std::all_of(opening.begin(), opening.end(), [&](std::uint32_t v) {
-           return options.seen(0.5F * (middle + sheet.positions[v]), radius_mm);
-         });
+  std::size_t most_scans = 0;
+  const auto seen = [&](const Vector3f& p) {
+    const std::size_t scans = options.samples_near(p, radius_mm).size();
+    most_scans = std::max(most_scans, scans);
+    return scans > 0;
+  };
+  // What one scan has there may be what lies around the opening.
+  return options.samples_near && seen(middle) &&
+         std::ranges::all_of(opening,
+                             [&](std::uint32_t v) { return seen(0.5F * (middle + sheet.positions[v])); }) &&
+         most_scans > 1;
 }
 
 }  // namespace
 
-bool is_gap(const Sheet& sheet, const std::vector<std::uint32_t>& opening, const GapFillOptions& options) {
+namespace {
+
+/// Whether it is as narrow as a gap may be.
+bool is_narrow(const Sheet& sheet, const std::vector<std::uint32_t>& opening, const GapFillOptions& options) {
   if (opening.size() < 3) {
     return false;
   }
@@ -171,6 +157,71 @@ bool is_gap(const Sheet& sheet, const std::vector<std::uint32_t>& opening, const
          seen_all_over(sheet, opening, mu, options);
 }
 
+/// Whether its rim is red: vertices that are sparse by their own scan, and that no other one clears.
+bool is_flagged(const Sheet& sheet, const std::vector<std::uint32_t>& opening) {
+  constexpr std::ptrdiff_t kLeastSparse = 3;  // around 3 × 3 missing samples there are four
+  return std::ranges::count_if(opening, [&](std::uint32_t v) {
+           return v < sheet.loose.size() && (sheet.loose[v] & 2) != 0;
+         }) >= kLeastSparse;
+}
+
+/// Whether there is a disc that no vertex around the opening lies in, and beside which no scan has a sample
+/// within the opening: the red map calls such a place a hole.
+bool has_bare_disc(const Sheet& sheet, const std::vector<std::uint32_t>& opening, const LooseVertices& loose,
+                   const GapFillOptions& options) {
+  constexpr float kStepSpacings = 0.25F;
+  constexpr float kMostSteps = 400.0F;
+  // What is no deeper in the opening may be of what its rim has been averaged from.
+  constexpr float kInsideSpacings = 0.5F;
+  const float mu = mean_spacing_mm(sheet, opening);
+  const float radius_mm = 0.5F * static_cast<float>(options.bare_disc_factor) * mu;
+  const double across_mm = opening_diameter_mm(sheet, opening);
+  if (across_mm < 2.0 * static_cast<double>(radius_mm) ||
+      across_mm > options.most_width_factor * static_cast<double>(mu)) {  // seen all over, if narrow
+    return false;
+  }
+  const std::optional<OpeningPlane> plane = OpeningPlane::of(sheet, opening);
+  if (!plane) {
+    return false;
+  }
+  const auto seen_beside = [&](const Vector2f& p) {
+    const Vector3f at = plane->at(p, plane->interpolate(p).height);
+    const auto within_mm = static_cast<float>(kSeenWithinSpacings) * mu;
+    return !loose.near(at, within_mm).empty() ||
+           (options.samples_near &&
+            std::ranges::any_of(options.samples_near(at, within_mm), [&](const Vector3f& sample) {
+              const Vector2f place = plane->place_of(sample);
+              return plane->encloses(place) &&
+                     plane->distance2_to_edges(place) > kInsideSpacings * kInsideSpacings * mu * mu;
+            }));
+  };
+  const Vector2f sizes = plane->high() - plane->low();
+  const float step_mm = std::max(kStepSpacings * mu, sizes.maxCoeff() / kMostSteps);
+  const Vector2f middle = 0.5F * (plane->low() + plane->high());
+  const int rows = static_cast<int>(0.5F * sizes.y() / step_mm);
+  const int cols = static_cast<int>(0.5F * sizes.x() / step_mm);
+  for (int r = -rows; r <= rows; ++r) {
+    for (int c = -cols; c <= cols; ++c) {
+      const Vector2f p = middle + step_mm * Vector2f(static_cast<float>(c), static_cast<float>(r));
+      if (plane->distance2_to_vertices(p) < radius_mm * radius_mm || !plane->encloses(p)) {
+        continue;
+      }
+      if (!seen_beside(p)) {
+        return true;
+      }
+    }
+  }
+  return false;
+}
+
+}  // namespace
+
+bool is_gap(const Sheet& sheet, const std::vector<std::uint32_t>& opening, const LooseVertices& loose,
+            const GapFillOptions& options) {
+  return is_narrow(sheet, opening, options) &&
+         !(is_flagged(sheet, opening) && has_bare_disc(sheet, opening, loose, options));
+}
+
 float gap_reach_mm(float spacing_mm, const SeamOptions& seam) {
   // The ball that a choice looks at goes 1.25 times the longest edge beyond the middle of one of up to that.
   return static_cast<float>(1.75 * seam.most_gap_edge_factor) * spacing_mm;
@@ -182,55 +233,37 @@ bool has_room(const Sheet& sheet, const std::vector<std::uint32_t>& opening, con
   });
 }
 
-std::size_t interpolate_vertices(Front& front, const std::vector<std::uint32_t>& opening) {
+std::size_t place_vertices(Front& front, const std::vector<std::uint32_t>& opening,
+                           const LooseVertices& loose) {
   const Sheet& sheet = front.sheet();
-  const float mu = mean_spacing_mm(sheet, opening);
-  Vector3f centre = Vector3f::Zero();
-  Vector3f normal = Vector3f::Zero();
-  for (const std::uint32_t v : opening) {
-    centre += sheet.positions[v];
-    normal += sheet.normals[v];
-  }
-  centre /= static_cast<float>(opening.size());
-  if (!(normal.norm() > 0.3F * static_cast<float>(opening.size())) || !(mu > 0)) {
+  const std::optional<OpeningPlane> plane = OpeningPlane::of(sheet, opening);
+  if (!plane) {
     return 0;
   }
-  normal.normalize();
-  const Vector3f u = normal.unitOrthogonal();
-  const Vector3f v_axis = normal.cross(u);
-  constexpr float kLeastCos = 0.2F;  // steeper walls are as steep as this
-  Rim rim;
-  const std::vector<Vector2f>& polygon = rim.places;
-  Vector2f low = Vector2f::Constant(std::numeric_limits<float>::max());
-  Vector2f high = -low;
-  for (const std::uint32_t v : opening) {
-    const Vector3f d = sheet.positions[v] - centre;
-    rim.places.emplace_back(d.dot(u), d.dot(v_axis));
-    rim.heights.push_back(d.dot(normal));
-    const Vector3f& n = sheet.normals[v];
-    rim.slopes.push_back(-Vector2f(n.dot(u), n.dot(v_axis)) / std::max(n.dot(normal), kLeastCos));
-    rim.variances.push_back(sheet.sigma_mm[v] * sheet.sigma_mm[v]);
-    low = low.cwiseMin(polygon.back());
-    high = high.cwiseMax(polygon.back());
+  const float mu = plane->spacing_mm();
+  const float apart2 = kApartSpacings * kApartSpacings * mu * mu;
+  const std::vector<Measured> measured = measured_inside(sheet, *plane, loose);
+  for (const Measured& m : measured) {
+    if (m.taken) {
+      front.offer_vertex(m.vertex);
+    }
   }
   const float row_mm = mu * 0.866F;
-  const int rows = static_cast<int>((high.y() - low.y()) / row_mm) + 1;
-  const int cols = static_cast<int>((high.x() - low.x()) / mu) + 1;
+  const Vector2f sizes = plane->high() - plane->low();
+  const int rows = static_cast<int>(sizes.y() / row_mm) + 1;
+  const int cols = static_cast<int>(sizes.x() / mu) + 1;
   std::size_t added = 0;
   for (int r = 0; r <= rows && rows < 200; ++r) {
     for (int c = 0; c <= cols && cols < 200; ++c) {
-      const Vector2f p(low.x() + mu * (static_cast<float>(c) + ((r & 1) != 0 ? 0.5F : 0.0F)),
-                       low.y() + row_mm * static_cast<float>(r));
-      bool clear = true;
-      for (std::size_t i = 0; i < polygon.size() && clear; ++i) {
-        const Vector2f& a = polygon[i];
-        const Vector2f ab = polygon[(i + 1) % polygon.size()] - a;
-        const float t = std::clamp((p - a).dot(ab) / std::max(ab.squaredNorm(), 1e-20F), 0.0F, 1.0F);
-        clear = (a + t * ab - p).squaredNorm() > 0.36F * mu * mu;
-      }
-      if (clear && inside_polygon(polygon, p)) {
-        const Interpolated at = interpolate(rim, p, mu);
-        front.add_vertex(centre + u * p.x() + v_axis * p.y() + normal * at.height, normal, mu, at.sigma);
+      const Vector2f p = plane->low() + Vector2f(mu * (static_cast<float>(c) + ((r & 1) != 0 ? 0.5F : 0.0F)),
+                                                 row_mm * static_cast<float>(r));
+      const bool clear =
+          plane->distance2_to_edges(p) > apart2 && std::ranges::all_of(measured, [&](const Measured& m) {
+            return (m.place - p).squaredNorm() > apart2;
+          });
+      if (clear && plane->encloses(p)) {
+        const OpeningPlane::Interpolated at = plane->interpolate(p);
+        front.add_vertex(plane->at(p, at.height + drawn_by(measured, p, mu)), plane->normal(), mu, at.sigma);
         ++added;
       }
     }
@@ -295,11 +328,13 @@ GapFillResult fill_gaps(Front& front, const SeamOptions& seam, const GapFillOpti
                         const JobContext& job) {
   GapFillResult result;
   result.first_interpolated = front.sheet().positions.size();
+  const LooseVertices loose(front.sheet());
   const auto gaps = [&] {
     auto openings = front.openings();
     OuterRims outer_rims(front.sheet());
     std::erase_if(openings, [&](const auto& o) {
-      return !is_gap(front.sheet(), o, options) || !has_room(front.sheet(), o, seam) || outer_rims.contain(o);
+      return !is_gap(front.sheet(), o, loose, options) || !has_room(front.sheet(), o, seam) ||
+             outer_rims.contain(o);
     });
     return openings;
   };
@@ -309,7 +344,7 @@ GapFillResult fill_gaps(Front& front, const SeamOptions& seam, const GapFillOpti
       return result;
     }
     if (opening_diameter_mm(front.sheet(), opening) > 2.5 * mean_spacing_mm(front.sheet(), opening)) {
-      interpolate_vertices(front, opening);
+      place_vertices(front, opening, loose);
     }
   }
   for (const double least_angle_rad : {seam.least_angle_rad, 0.4 * seam.least_angle_rad, 0.01}) {

@@ -38,6 +38,9 @@ struct OwnedScan {
   std::vector<std::size_t> other;
   std::vector<std::uint8_t> kept;   ///< out: 1 where the sample is a vertex of the stitched mesh
   std::vector<std::uint8_t> cells;  ///< out: CellBit codes of the triangles that are kept
+  /// out: samples, ascending, that are not kept though nobody keeps anything where they lie: too few beside
+  /// each other for a patch, or without a triangle that meets no other. Averaged, too.
+  std::vector<std::uint32_t> loose;
   /// 1 where a kept sample lies within kLookAroundSamples: most of what is asked about others ends here.
   /// kAllAroundKept where triangles lie all around it.
   std::vector<std::uint8_t> near_kept;

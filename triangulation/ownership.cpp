@@ -3,6 +3,7 @@
 #include "triangulation/ownership.h"
 
 #include <algorithm>
+#include <iterator>
 
 #include "core/parallel.h"
 #include "triangulation/contest.h"
@@ -149,6 +150,7 @@ bool assign_owners(std::vector<OwnedScan>& scans, const GridTriangulationOptions
   for (OwnedScan& scan : scans) {
     scan.kept.clear();
     scan.cells.clear();
+    scan.loose.clear();
     scan.near_kept.clear();
     scan.some_kept.clear();
     scan.all_kept.clear();
@@ -197,7 +199,7 @@ bool assign_owners(std::vector<OwnedScan>& scans, const GridTriangulationOptions
     }
     drop_scattered(fresh, scan.kept, scan.surface->lattice, options.least_patch_samples);
     for (const std::uint32_t i : uncovered) {
-      if (fresh[i] != 0 && scan.fused->slot[i] == FusedSamples::kNone) {
+      if (scan.fused->slot[i] == FusedSamples::kNone) {
         unfused.push_back(i);
       }
     }
@@ -207,6 +209,8 @@ bool assign_owners(std::vector<OwnedScan>& scans, const GridTriangulationOptions
     }
     add_samples(scans, self, std::move(fresh), contest, grid, options, options.least_patch_samples, laid,
                 job);
+    std::ranges::copy_if(uncovered, std::back_inserter(scan.loose),
+                         [&](std::uint32_t i) { return scan.kept[i] == 0; });
   }
   return !job.cancelled();
 }

@@ -244,7 +244,7 @@ struct Stitcher::Impl {
     }
     const auto laid = [&] {
       for (OwnedScan& scan : scans) {
-        release(scan.kept, scan.cells, scan.near_kept, scan.some_kept, scan.all_kept);
+        release(scan.kept, scan.cells, scan.loose, scan.near_kept, scan.some_kept, scan.all_kept);
       }
       if (lets_go) {
         for (auto& [key, entry] : entries) {

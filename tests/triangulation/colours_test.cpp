@@ -20,11 +20,11 @@ std::array<std::uint8_t, 3> colour_at(double x) {
   return {static_cast<std::uint8_t>(std::lround(120 + 20 * x)), 90, 60};
 }
 
-/// 61 x 61 samples of a plane, redder to the right, with a hole of one sample and one of 3 x 3.
+/// 61 x 61 samples of a plane, redder to the right, with a hole of one sample and one of 2 x 5.
 RangeGrid coloured_plate() {
   RangeGrid grid = test::height_grid(61, 61, kMu, [](double x, double y) {
     const bool hole =
-        (std::abs(x) < 0.05 && std::abs(y) < 0.05) || (std::abs(x - 1) < 0.15 && std::abs(y - 1) < 0.15);
+        (std::abs(x) < 0.05 && std::abs(y) < 0.05) || (std::abs(x - 1) < 0.25 && std::abs(y - 1.05) < 0.1);
     return hole ? std::numeric_limits<double>::quiet_NaN() : 0.0;
   });
   grid.rgb.resize(3 * grid.size());

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -114,6 +115,25 @@ TEST(GapFill, FillsAFewSamplesAndLeavesWideHoles) {
     const Eigen::Vector3f& p = sheet.positions[v];
     EXPECT_NEAR(p.z(), 0.05F * (p.x() * p.x() + p.y() * p.y()), 0.01F);
   }
+}
+
+TEST(GapFill, WhatIsSparseAroundAHoleLeavesItOpen) {
+  RangeGrid grid = test::height_grid(40, 40, 0.1, [](double, double) { return 0.0; });
+  for (const auto& [row, col, side] : {std::array{10, 10, 3}, {10, 25, 2}, {25, 10, 1}, {25, 25, 4}}) {
+    for (int r = row; r < row + side; ++r) {
+      for (int c = col; c < col + side; ++c) {
+        grid.valid[grid.index(r, c)] = 0;
+      }
+    }
+  }
+  Sheet sheet;
+  append(sheet, triangulate_grid(grid, {}), 0.1F);
+  sheet.loose.assign(sheet.positions.size(), 2);
+  ASSERT_EQ(report_of(sheet).boundary_loops, 5U);
+  Front front(sheet);
+  close_seams(front, {});
+  fill_gaps(front, {}, {});
+  EXPECT_EQ(report_of(sheet).boundary_loops, 3U);
 }
 
 TEST(Front, RefusesAHalfEdgeTwice) {

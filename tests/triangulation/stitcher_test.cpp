@@ -6,9 +6,11 @@
 
 #include <tbb/global_control.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <memory>
+#include <utility>
 
 #include "core/mesh_query.h"
 #include "core/random.h"
@@ -256,27 +258,78 @@ TEST(Stitcher, OpenWhereNothingWasSeen) {
   EXPECT_EQ(report.boundary_loops, 1U);
 }
 
-TEST(Stitcher, SmallGapsAreFilledAndMarked) {
+/// 60 x 60 samples, those of `rows` x `cols` from (30, 30) on missing.
+RangeGrid with_a_hole(int rows, int cols) {
   RangeGrid grid = test::height_grid(60, 60, 0.1, [](double x, double y) { return 0.1 * x * y; });
-  for (int r = 30; r < 33; ++r) {
-    for (int c = 30; c < 33; ++c) {
+  for (int r = 30; r < 30 + rows; ++r) {
+    for (int c = 30; c < 30 + cols; ++c) {
       grid.valid[grid.index(r, c)] = 0;
     }
   }
-  test::ScanSet set;
-  set.add(grid, {});
-  const Mesh mesh = stitched(set);
-  EXPECT_EQ(check_mesh(mesh).boundary_loops, 1U);
-  std::size_t interpolated = 0;
+  return grid;
+}
+
+std::size_t interpolated_in(const Mesh& mesh) {
+  std::size_t count = 0;
   for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
     if ((mesh.flags[v] & kVertexInterpolated) != 0) {
-      ++interpolated;
+      ++count;
       EXPECT_EQ(mesh.scans[v], 0);
       EXPECT_EQ(mesh.reliability[v], 0.0F);
     }
   }
-  EXPECT_GT(interpolated, 0U);
-  EXPECT_LT(interpolated, 40U);
+  return count;
+}
+
+TEST(Stitcher, SmallGapsAreFilledAndMarked) {
+  test::ScanSet set;
+  set.add(with_a_hole(2, 5), {});
+  const Mesh mesh = stitched(set);
+  EXPECT_EQ(check_mesh(mesh).boundary_loops, 1U);
+  EXPECT_GT(interpolated_in(mesh), 0U);
+  EXPECT_LT(interpolated_in(mesh), 40U);
+  test::ScanSet four;
+  four.add(with_a_hole(2, 2), {});
+  EXPECT_EQ(check_mesh(stitched(four)).boundary_loops, 1U);
+}
+
+TEST(Stitcher, HolesOfTheRedMapStayOpen) {
+  for (const auto& [rows, cols] : {std::pair(3, 3), {4, 4}, {5, 5}, {3, 20}}) {
+    test::ScanSet set;
+    set.add(with_a_hole(rows, cols), {});
+    const auto sparse = std::ranges::count_if(set.flags[0], [](std::uint8_t f) { return !is_unflagged(f); });
+    test::ScanSet whole;
+    whole.add(with_a_hole(0, 0), {});
+    const auto at_border =
+        std::ranges::count_if(whole.flags[0], [](std::uint8_t f) { return !is_unflagged(f); });
+    EXPECT_GT(sparse, at_border);  // the hole is red
+    const Mesh mesh = stitched(set);
+    EXPECT_EQ(check_mesh(mesh).boundary_loops, 2U) << rows << " x " << cols;
+    EXPECT_EQ(interpolated_in(mesh), 0U) << rows << " x " << cols;
+  }
+}
+
+TEST(Stitcher, OpeningsThatAnotherScanCoversAreClosedWithItsSamples) {
+  // Too few samples for a patch of their own: nine at the most, half a spacing off.
+  for (const int side : {2, 3}) {
+    test::ScanSet set;
+    set.add(with_a_hole(side, side), {});
+    RigidTransform aside;
+    aside.translation_mm = {0.05, 0.05, 0};
+    set.add(test::height_grid(60, 60, 0.1, [](double x, double y) { return 0.1 * (x + 0.05) * (y + 0.05); }),
+            aside);
+    const Mesh mesh = stitched(set);
+    EXPECT_EQ(check_mesh(mesh).boundary_loops, 1U) << side;
+    EXPECT_EQ(interpolated_in(mesh), 0U) << side;
+    const float from = 0.05F, to = 0.05F + 0.1F * static_cast<float>(side - 1);
+    const auto within = std::ranges::count_if(mesh.positions, [&](const Eigen::Vector3f& p) {
+      return p.x() > from - 0.08F && p.x() < to + 0.08F && p.y() > from - 0.08F && p.y() < to + 0.08F;
+    });
+    EXPECT_GT(within, side == 2 ? 0 : 3) << side;
+    for (const Eigen::Vector3f& p : mesh.positions) {
+      ASSERT_NEAR(p.z(), 0.1F * p.x() * p.y(), 1e-3F);
+    }
+  }
 }
 
 TEST(Stitcher, SpecksGo) {
