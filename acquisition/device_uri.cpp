@@ -12,6 +12,8 @@ namespace dubsar {
 
 namespace {
 
+constexpr const char* kMarkInName = "in the name of a folder or file write %3F for ? and %25 for %";
+
 /// A colon that ends a scheme, or npos: "C:/x" with its single letter, "./a:b" and "/a:b" are paths.
 std::size_t scheme_end(std::string_view text) {
   const std::size_t colon = text.find(':');
@@ -111,8 +113,8 @@ Result<DeviceUri> parse_device_uri(std::string_view text) {
     }
     const std::size_t equals = part.find('=');
     if (equals == std::string_view::npos || equals == 0) {
-      return fail(ErrorKind::kUsage, "option '" + std::string(part) + "' is not key=value",
-                  std::string(text));
+      return fail(ErrorKind::kUsage, "option '" + std::string(part) + "' is not key=value", std::string(text),
+                  kMarkInName);
     }
     const Result<std::string> key = decoded(part.substr(0, equals), text);
     const Result<std::string> value = decoded(part.substr(equals + 1), text);
@@ -158,7 +160,12 @@ Result<Device> open_device(const DeviceUri& uri, const DriverRegistry& registry)
   if (!driver) {
     return std::unexpected(driver.error());
   }
-  return (*driver)->open(uri.locator, uri.options);
+  Result<Device> device = (*driver)->open(uri.locator, uri.options);
+  if (!device && device.error().kind == ErrorKind::kUsage && uri.scheme == "replay" && !uri.options.empty() &&
+      device.error().what.starts_with("no option")) {
+    device.error().mend += std::string("; ") + kMarkInName;
+  }
+  return device;
 }
 
 }  // namespace dubsar

@@ -20,10 +20,6 @@ constexpr double kMostAcrossMm = 1e6;
 /// What the fits believe at best (inner_edges.cpp): coarser places would decide what is measured.
 constexpr double kCoarsestPlaceMm = 0.004;
 
-bool plausible(double across_mm) {
-  return across_mm >= kLeastMm && across_mm <= kMostMm;
-}
-
 Eigen::AlignedBox3f box_in_use(const Mesh& mesh) {
   Eigen::AlignedBox3f box;
   for (const auto& f : mesh.faces) {
@@ -38,9 +34,17 @@ Eigen::AlignedBox3f box_in_use(const Mesh& mesh) {
 
 }  // namespace
 
-double size_across_mm(const Mesh& mesh) {
+Eigen::Vector3d size_mm(const Mesh& mesh) {
   const Eigen::AlignedBox3f box = box_in_use(mesh);
-  return box.isEmpty() ? 0.0 : static_cast<double>(box.diagonal().norm());
+  return box.isEmpty() ? Eigen::Vector3d::Zero().eval() : box.sizes().cast<double>().eval();
+}
+
+double size_across_mm(const Mesh& mesh) {
+  return size_mm(mesh).norm();
+}
+
+bool is_inscribed_size(double across_mm) {
+  return across_mm >= kLeastMm && across_mm <= kMostMm;
 }
 
 std::vector<std::string_view> likelier_units(double across_mm, double mm_per_number) {
@@ -48,11 +52,20 @@ std::vector<std::string_view> likelier_units(double across_mm, double mm_per_num
       {{"mm", 1.0}, {"m", 1000.0}, {"um", 0.001}, {"cm", 10.0}, {"in", 25.4}}};
   std::vector<std::string_view> likelier;
   for (const auto& [name, mm] : kUnits) {
-    if (across_mm > 0 && !plausible(across_mm) && plausible(across_mm / mm_per_number * mm)) {
+    if (across_mm > 0 && !is_inscribed_size(across_mm) && is_inscribed_size(across_mm / mm_per_number * mm)) {
       likelier.push_back(name);
     }
   }
   return likelier;
+}
+
+std::optional<std::string_view> likely_unit(double across_mm, double mm_per_number) {
+  for (const std::string_view unit : likelier_units(across_mm, mm_per_number)) {
+    if (unit == "m" || unit == "mm" || unit == "um") {
+      return unit;
+    }
+  }
+  return std::nullopt;
 }
 
 double coarsest_place_mm(const Mesh& mesh) {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
 #include <utility>
 
 namespace dubsar {
@@ -17,9 +18,20 @@ bool runs_to_255(double value) {
   return value > kBrightest && std::isfinite(value);
 }
 
+std::array<int, 3> PlyColours::properties_of(const PlyElement& vertex) {
+  for (const std::string prefix : {"", "diffuse_"}) {
+    const std::array<int, 3> three{vertex.scalar(prefix + "red"), vertex.scalar(prefix + "green"),
+                                   vertex.scalar(prefix + "blue")};
+    if (std::ranges::all_of(three, [](int p) { return p >= 0; })) {
+      return three;
+    }
+  }
+  return {-1, -1, -1};
+}
+
 PlyColours::PlyColours(const PlyElement& vertex) {
-  const std::array<int, 3> property{vertex.scalar("red"), vertex.scalar("green"), vertex.scalar("blue")};
-  if (std::ranges::any_of(property, [](int p) { return p < 0; })) {
+  const std::array<int, 3> property = properties_of(vertex);
+  if (property[0] < 0) {
     return;
   }
   property_ = property;

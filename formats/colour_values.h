@@ -28,6 +28,10 @@ class PlyColours {
   /// As many as the element has vertices; none where it lacks one of the three.
   explicit PlyColours(const PlyElement& vertex);
 
+  /// Those of red, green and blue, or of diffuse_red and so on, as some programs write them; -1 where there
+  /// are none.
+  [[nodiscard]] static std::array<int, 3> properties_of(const PlyElement& vertex);
+
   [[nodiscard]] bool any() const { return property_[0] >= 0; }
   /// value(property) -> double, of one vertex. Several threads may put different vertices.
   template <class Value>

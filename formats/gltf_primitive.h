@@ -23,6 +23,7 @@ struct GltfReading {
   std::size_t most_items;         ///< vertices, and faces
   std::size_t most_packed_items;  ///< the same, where a primitive is compressed
   std::size_t packed_bytes;       ///< that may still be decompressed
+  bool textured = false;          ///< a primitive has texture coordinates
 };
 
 /// The numbers of one primitive of triangles, in the binary chunk or decompressed.

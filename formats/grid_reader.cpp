@@ -82,6 +82,14 @@ FileKind kind_of_unread(const std::filesystem::path& name) {
                                         : FileKind::kScan;
 }
 
+std::unexpected<Error> no_scan(const std::filesystem::path& name) {
+  const bool table = in_lower_case(name.extension().string()) == ".csv";
+  return bad_input(name.string(), "not a scan that Dubsar reads",
+                   has_packed_name(name) ? "unpack the packed files"
+                   : table               ? "rename .csv to .xyz where the lines are points"
+                                         : "give range-grid PLY, PTX, point text or .grid");
+}
+
 std::vector<ScanData> one(ScanData scan) {
   std::vector<ScanData> scans;
   scans.push_back(std::move(scan));
@@ -89,6 +97,11 @@ std::vector<ScanData> one(ScanData scan) {
 }
 
 }  // namespace
+
+bool has_packed_name(const std::filesystem::path& name) {
+  constexpr std::array<std::string_view, 7> kPacked{".gz", ".zip", ".7z", ".bz2", ".xz", ".zst", ".rar"};
+  return std::ranges::find(kPacked, in_lower_case(name.extension().string())) != kPacked.end();
+}
 
 Result<std::vector<ScanData>> read_scan_bytes(std::string_view bytes, const std::string& name,
                                               const GridReadOptions& options) {
@@ -115,7 +128,7 @@ Result<std::vector<ScanData>> read_scan_bytes(std::string_view bytes, const std:
       scan = read_point_text(bytes, name, options);
       break;
     case ScanFormat::kUnknown:
-      return bad_input(name, "not a scan that Dubsar reads", "give range-grid PLY, PTX, point text or .grid");
+      return no_scan(name);
   }
   if (!scan) {
     return std::unexpected(scan.error());
@@ -183,8 +196,7 @@ Result<int> count_scans(const std::filesystem::path& path) {
                  : std::unexpected(bytes.error());
   }
   if (const FileKind kind = kind_of_file(path); kind == FileKind::kOther || kind == FileKind::kDoubtful) {
-    return bad_input(path.string(), "not a scan that Dubsar reads",
-                     "give range-grid PLY, PTX, point text or .grid");
+    return no_scan(path);
   }
   return 1;
 }

@@ -40,6 +40,9 @@ inline constexpr double kMaxCoordinateMm = 1e6;
 [[nodiscard]] Result<std::vector<ScanData>> read_scan_bytes(std::string_view bytes, const std::string& name,
                                                             const GridReadOptions& options = {});
 
+/// Whether the name is one of an archive or a packed file (.gz, .zip and so on).
+[[nodiscard]] bool has_packed_name(const std::filesystem::path& name);
+
 /// What a file in a folder of scans is taken for.
 enum class FileKind {
   kScan,       ///< a scan, also one that is damaged or cannot be read: leaving it out would hide that

@@ -62,6 +62,9 @@ enum class MeshFormat : std::uint8_t { kPly, kObj, kStl, kGlb, kDracoGlb, kUnkno
                                            const MeshReadOptions& options);
 [[nodiscard]] bool is_glb(std::string_view bytes);
 
+/// What a mesh has no place for, as MeshReadOptions::passed_over names it.
+inline constexpr const char* kTextureCoordinates = "texture coordinates";
+
 /// A vertex in millimetres, or nothing when it is not finite.
 [[nodiscard]] bool append_position(Mesh& mesh, double x_mm, double y_mm, double z_mm);
 

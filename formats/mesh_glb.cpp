@@ -168,6 +168,8 @@ void append_scene(GltfReading& reading, double mm, const JobContext* job, Mesh& 
     if (const auto number = placed.node.find("mesh")) {
       for (const JsonNode& primitive : gltf_entry(root, "meshes", *number).at("primitives").items()) {
         append_primitive(reading, primitive, placed.scene_from_node, mesh);
+        const auto attributes = primitive.find("attributes");
+        reading.textured = reading.textured || (attributes && attributes->find("TEXCOORD_0"));
       }
     }
     if (const auto children = placed.node.find("children")) {
@@ -228,6 +230,9 @@ Result<Mesh> decode_mesh_glb(std::string_view bytes, const std::string& where,
   }
   if (mesh.faces.empty()) {
     return bad_input(where, "its scene holds no triangle", "export the mesh again");
+  }
+  if (reading.textured && options.passed_over != nullptr) {
+    *options.passed_over = {kTextureCoordinates};
   }
   mesh.colours.resize(mesh.colours.empty() ? 0 : mesh.positions.size(), kWhite);
   weld_equal_positions(mesh);

@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "core/job.h"
 #include "core/mesh.h"
@@ -20,6 +21,8 @@ struct MeshReadOptions {
   std::optional<double> mm_per_unit{};
   /// A PLY or OBJ of vertices alone gives a mesh without faces, for who only looks at it.
   bool may_be_points = false;
+  /// Given the names of what the file holds and a mesh does not ("vertex quality", "edge"); null: not wanted.
+  std::vector<std::string>* passed_over = nullptr;
   /// Reading ends soon after it is cancelled, with kCancelled; null: never.
   const JobContext* job = nullptr;
 };

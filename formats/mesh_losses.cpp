@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "formats/mesh_formats.h"
@@ -23,11 +24,25 @@ std::string format_name(const std::filesystem::path& file) {
 }
 
 /// "scans", "scans or flags", "sigma, scans or flags"
-std::string alternatives(const std::vector<std::string>& names) {
+std::string listed(std::span<const std::string> names, const char* before_last) {
   std::string out;
   for (std::size_t k = 0; k < names.size(); ++k) {
-    out += k == 0 ? "" : k + 1 == names.size() ? " or " : ", ";
+    out += k == 0 ? "" : k + 1 == names.size() ? before_last : ", ";
     out += names[k];
+  }
+  return out;
+}
+
+/// A file may name hundreds of properties, as long as it likes.
+std::vector<std::string> shortened(std::span<const std::string> names) {
+  constexpr std::size_t kMostNamed = 8;
+  constexpr std::size_t kMostBytes = 40;
+  std::vector<std::string> out;
+  for (const std::string& name : names.first(std::min(names.size(), kMostNamed))) {
+    out.push_back(name.size() > kMostBytes ? name.substr(0, kMostBytes) + "..." : name);
+  }
+  if (names.size() > kMostNamed) {
+    out.push_back(std::to_string(names.size() - kMostNamed) + " more");
   }
   return out;
 }
@@ -36,12 +51,14 @@ std::string alternatives(const std::vector<std::string>& names) {
 
 LeftOut left_out_of(const Mesh& mesh, const std::filesystem::path& file) {
   LeftOut out;
-  if (format_of(file) != MeshFormat::kDracoGlb) {
+  const MeshFormat format = format_of(file);
+  const bool whole_faces_alone = format == MeshFormat::kDracoGlb;
+  if (!whole_faces_alone && format != MeshFormat::kStl) {
     return out;
   }
   std::vector<std::uint8_t> used(mesh.positions.size(), 0);
   for (const auto& [a, b, c] : mesh.faces) {
-    if (a == b || b == c || c == a) {
+    if (whole_faces_alone && (a == b || b == c || c == a)) {
       ++out.faces;
     } else {
       used[a] = used[b] = used[c] = 1;
@@ -51,15 +68,12 @@ LeftOut left_out_of(const Mesh& mesh, const std::filesystem::path& file) {
   return out;
 }
 
-std::optional<Error> mesh_losses(const Mesh& mesh, const std::filesystem::path& file,
-                                 const std::string& mend) {
+std::optional<Error> mesh_losses(const Mesh& mesh, const std::filesystem::path& file, const std::string& mend,
+                                 std::span<const std::string> passed_over) {
   const std::string format = format_name(file);
-  if (format == "PLY") {
-    return std::nullopt;
-  }
   std::vector<std::string> lost;
   const auto lose = [&](const char* name, bool known) {
-    if (known) {
+    if (known && format != "PLY") {
       lost.emplace_back(name);
     }
   };
@@ -75,11 +89,15 @@ std::optional<Error> mesh_losses(const Mesh& mesh, const std::filesystem::path& 
   if (out.faces > 0) {
     lost.push_back("faces without three different corners (" + std::to_string(out.faces) + ")");
   }
-  if (lost.empty()) {
+  if (lost.empty() && passed_over.empty()) {
     return std::nullopt;
   }
-  return Error{ErrorKind::kBadInput, format + " holds no " + alternatives(lost) + ": left out", file.string(),
-               mend};
+  std::string what = lost.empty() ? "" : format + " holds no " + listed(lost, " or ") + ": left out";
+  if (!passed_over.empty()) {
+    what += lost.empty() ? "" : ", and ";
+    what += "what Dubsar does not read is left out: " + listed(shortened(passed_over), " and ");
+  }
+  return Error{ErrorKind::kBadInput, what, file.string(), mend};
 }
 
 }  // namespace dubsar

@@ -33,6 +33,7 @@ class ObjReader {
       std::string_view rest = next_line();
       const std::string_view keyword = take_word(rest);
       const bool is_vertex = keyword == "v";
+      textured_ = textured_ || keyword == "vt";
       if (is_vertex || keyword == "f") {
         any_keyword = true;
         rest = with_what_follows(rest);
@@ -53,6 +54,9 @@ class ObjReader {
                        "give a mesh; scans become one with dubsar stitch");
     }
     lay_colours();
+    if (textured_ && options_.passed_over != nullptr) {
+      *options_.passed_over = {kTextureCoordinates};
+    }
     return std::move(mesh_);
   }
 
@@ -157,6 +161,7 @@ class ObjReader {
   std::size_t line_number_ = 0;
   std::int64_t highest_ = 0;  ///< of the corners counted from the first vertex
   std::size_t highest_line_ = 0;
+  bool textured_ = false;
 };
 
 /// " red green blue" behind a place, from 0 to 1 with six decimals, rounded up: whoever multiplies by 255

@@ -11,6 +11,7 @@
 #include "formats/colour_values.h"
 #include "formats/mesh_formats.h"
 #include "formats/ply_body.h"
+#include "formats/ply_passed_over.h"
 #include "formats/ply_scan.h"
 #include "formats/scan_samples.h"
 
@@ -37,13 +38,6 @@ struct Columns {
     return std::all_of(three.begin(), three.end(), [](int p) { return p >= 0; });
   }
 };
-
-/// Whether a vertex stands once for each place in a texture: along the texture's seams several times.
-bool has_texture_places(const PlyElement& vertex) {
-  return (vertex.scalar("s") >= 0 && vertex.scalar("t") >= 0) ||
-         (vertex.scalar("u") >= 0 && vertex.scalar("v") >= 0) ||
-         (vertex.scalar("texture_u") >= 0 && vertex.scalar("texture_v") >= 0);
-}
 
 /// NaN and what lies outside become the nearest byte.
 std::uint8_t byte_of(double value) {
@@ -254,6 +248,15 @@ Status read_strips(PlyBody& body, const PlyElement& strips, std::uint64_t vertic
   });
 }
 
+/// One of one or two corners stays as a degenerate face, which the mesh check counts.
+void append_polygon_or_fault(Mesh& mesh, const std::vector<std::uint32_t>& corners) {
+  if (corners.size() == 1 || corners.size() == 2) {
+    mesh.faces.push_back({corners.front(), corners.back(), corners.back()});
+  } else {
+    append_polygon(mesh, corners);
+  }
+}
+
 Status read_faces(PlyBody& body, const PlyElement& face, std::uint64_t vertices, const std::string& where,
                   Mesh& mesh) {
   const int list = vertex_list(face);
@@ -272,7 +275,7 @@ Status read_faces(PlyBody& body, const PlyElement& face, std::uint64_t vertices,
       }
       corners.push_back(static_cast<std::uint32_t>(corner));
     }
-    append_polygon(mesh, corners);
+    append_polygon_or_fault(mesh, corners);
     return {};
   });
 }
@@ -322,8 +325,12 @@ Result<Mesh> decode_mesh_ply(std::string_view bytes, const std::string& where,
       return std::unexpected(status.error());
     }
   }
-  if (mesh.faces.empty() && !options.may_be_points) {
+  const auto is_line = [](const auto& face) { return face[1] == face[2]; };
+  if (std::ranges::all_of(mesh.faces, is_line) && !options.may_be_points) {
     return refused(kNoFaces);
+  }
+  if (options.passed_over != nullptr) {
+    *options.passed_over = passed_over_of_mesh(*header);
   }
   if (has_texture_places(*vertex) && !mesh.faces.empty()) {
     weld_equal_positions(mesh);

@@ -165,6 +165,9 @@ Result<std::vector<std::uint32_t>> read_cells(PlyBody& body, const PlyElement& g
           grid, cell, "holds " + std::to_string(indices.size()) + " vertices, not one or none", kExportAgain);
     }
     const double index = indices.front();
+    if (index == -1) {  // as some exporters write no return
+      return {};
+    }
     if (!(index >= 0 && index < static_cast<double>(vertices) && index == std::floor(index))) {
       return body.error_at(grid, cell,
                            "vertex index " + number_text(index) + " is not one of the " +

@@ -84,6 +84,9 @@ Triple judge(const std::vector<float>& triples) {
 }  // namespace
 
 std::size_t count_point_lines(std::string_view head) {
+  if (has_macintosh_lines(head)) {
+    return count_point_lines(with_line_feeds(head));
+  }
   std::size_t count = 0;
   TextScanner text(head);
   for (std::size_t number = 1; text.remaining() > 0; ++number) {
@@ -101,6 +104,9 @@ Result<ScanData> read_point_text(std::string_view bytes, const std::string& name
                                  const GridReadOptions& options) {
   if (bytes.empty()) {
     return bad_input(name, "the file is empty", "copy or export it again");
+  }
+  if (has_macintosh_lines(bytes)) {
+    return read_point_text(with_line_feeds(bytes), name, options);
   }
   const double mm = options.mm_per_unit.value_or(1.0);
   TextScanner text(bytes);

@@ -3,7 +3,6 @@
 #include "formats/scan_folder.h"
 
 #include <algorithm>
-#include <array>
 
 #include "core/lower_case.h"
 #include "formats/grid_reader.h"
@@ -15,11 +14,6 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr std::size_t kMostNamed = 5;
-
-bool is_packed(std::string_view extension) {
-  constexpr std::array<std::string_view, 7> kArchives{".gz", ".zip", ".7z", ".bz2", ".xz", ".zst", ".rar"};
-  return std::ranges::find(kArchives, extension) != kArchives.end();
-}
 
 }  // namespace
 
@@ -68,7 +62,7 @@ Result<ScanFolder> look_into_folder(const fs::path& folder) {
         // Sockets and the like are no files.
         found.other_files += it->is_regular_file(ignored) ? 1 : 0;
         found.tables = found.tables || extension == ".csv";
-        found.packed = found.packed || is_packed(extension);
+        found.packed = found.packed || has_packed_name(path);
         break;
     }
   }

@@ -118,6 +118,12 @@ std::size_t TextScanner::line_number() const {
   return 1 + static_cast<std::size_t>(std::count(begin_, at_, '\n'));
 }
 
+std::string with_line_feeds(std::string_view text) {
+  std::string out(text);
+  std::ranges::replace(out, '\r', '\n');
+  return out;
+}
+
 std::string in_quotes(std::string_view word) {
   std::string text(1, '\'');
   text.append(word.substr(0, kMaxWordShown));

@@ -57,6 +57,13 @@ class TextScanner {
   return text.starts_with("\xEF\xBB\xBF") ? text.substr(3) : text;
 }
 
+/// Whether the lines of a text end in a carriage return alone, as those of an old Macintosh do.
+[[nodiscard]] inline bool has_macintosh_lines(std::string_view text) {
+  return text.contains('\r') && !text.contains('\n');
+}
+/// Such a text with line feeds instead.
+[[nodiscard]] std::string with_line_feeds(std::string_view text);
+
 /// The word between quotes, shortened to what fits into a message.
 [[nodiscard]] std::string in_quotes(std::string_view word);
 

@@ -72,6 +72,9 @@ std::string wedges_to_json(const WedgeFile& file) {
     root["tablet"][label_value(name)] = label_value(value);
   }
   root["mesh"] = file.mesh;
+  if (!file.unit_assumed.empty()) {
+    root["unit_assumed"] = file.unit_assumed;
+  }
   root["exit"] = kExits[static_cast<std::size_t>(file.exits)];
   if (file.text_from_model) {
     root["text_from_model"] = json_of(*file.text_from_model);
@@ -125,6 +128,9 @@ Result<WedgeFile> parse_wedges(std::string_view text, const std::string& where) 
   }
   if (const auto mesh = root.find("mesh")) {
     file.mesh = mesh->text();
+  }
+  if (const auto unit = root.find("unit_assumed")) {
+    file.unit_assumed = unit->text();
   }
   if (const auto exits = root.find("exit")) {
     file.exits = static_cast<ExitDefinition>(exits->one_of(kExits));

@@ -23,6 +23,8 @@ struct WedgeFile {
   FileLabel label;   ///< what they are of; the file may travel alone
   std::string mesh;  ///< file name of the mesh
   ExitDefinition exits = ExitDefinition::kSurface;
+  /// What the mesh's numbers were taken for, by their size alone: one of kLengthUnits. Mostly empty.
+  std::string unit_assumed;
   std::vector<Wedge> wedges;
   std::vector<RejectedWedge> rejected;
   std::size_t corrections = 0;       ///< how many a person has asked for

@@ -126,6 +126,7 @@ py::dict report_of(const MeshReport& report) {
   out["inconsistent_faces"] = report.inconsistent_faces;
   out["degenerate_faces"] = report.degenerate_faces;
   out["duplicate_faces"] = report.duplicate_faces;
+  out["repeated_faces"] = report.repeated_faces;
   out["self_intersections"] = report.self_intersections;
   out["unreferenced_vertices"] = report.unreferenced_vertices;
   out["area_mm2"] = report.area_mm2;

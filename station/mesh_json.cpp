@@ -23,6 +23,7 @@ nlohmann::ordered_json mesh_report_json(const MeshReport& report) {
       {"inconsistent_faces", report.inconsistent_faces},
       {"degenerate_faces", report.degenerate_faces},
       {"duplicate_faces", report.duplicate_faces},
+      {"repeated_faces", report.repeated_faces},
       {"self_intersections", report.self_intersections},
       {"unreferenced_vertices", report.unreferenced_vertices},
       {"share_below_10_deg", report.thin_share},

@@ -15,6 +15,7 @@
 #include "registration/registrar.h"
 #include "station/conf_unit.h"
 #include "station/lock_places.h"
+#include "station/poses_by_id.h"
 #include "station/poses_scale.h"
 #include "triangulation/placed_precision.h"
 
@@ -264,9 +265,12 @@ Result<std::vector<ScanPose>> poses_from_file(const ScanSet& set, const std::fil
                                               const std::string& unit) {
   const std::filesystem::path of =
       set.scans.empty() ? std::filesystem::path() : set.scans.front().read_from.parent_path();
-  const Result<std::vector<ScanPose>> read = read_poses_file(poses_file, unit, of);
+  Result<std::vector<ScanPose>> read = read_poses_file(poses_file, unit, of);
   if (!read) {
     return std::unexpected(read.error());
+  }
+  if (!set.is_session()) {
+    let_numbers_tell(set.scans, poses_file, &*read);
   }
   std::vector<ScanPose> poses;
   for (const StationScan& scan : set.scans) {

@@ -4,6 +4,7 @@
 
 #include "core/inside_out.h"
 #include "core/log.h"
+#include "triangulation/mesh_check.h"
 
 namespace dubsar {
 
@@ -12,6 +13,9 @@ namespace {
 /// A mesh that was mirrored on its way (left-handed programs) is inside out too, and its text is mirrored.
 constexpr const char* kMend =
     "mend the file with dubsar mesh convert --turn-over, and look whether its signs are mirrored";
+/// Of a mesh that turns into itself, as a Moebius strip does, none of the two ways is right.
+constexpr const char* kMendFacesFirst =
+    "some of its faces run against their neighbours: mend these first, then look again";
 
 }  // namespace
 
@@ -19,7 +23,9 @@ std::optional<Error> inside_out(const Mesh& mesh, const std::string& where) {
   if (!is_inside_out(mesh)) {
     return std::nullopt;
   }
-  return Error{ErrorKind::kBadInput, "it is inside out: its faces look inwards", where, kMend};
+  const bool consistent = check_manifold(mesh).inconsistent_faces == 0;
+  return Error{ErrorKind::kBadInput, "it is inside out: its faces look inwards", where,
+               consistent ? kMend : kMendFacesFirst};
 }
 
 void face_outwards(Mesh* mesh, const std::string& where) {

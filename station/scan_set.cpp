@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <iterator>
 #include <map>
+#include <numeric>
 #include <utility>
 
 #include "acquisition/device_uri.h"
@@ -147,7 +148,8 @@ Status load_folder(const fs::path& path, const ScanSetOptions& options, const Sc
     job.progress("reading scans", std::min(1.0, read / count));
     Result<std::optional<RangeGrid>> grid = source->next([](const RangeGrid&, int) {}, job);
     if (!grid && grid.error().kind == ErrorKind::kBadInput) {
-      set.left_out.push_back(grid.error());  // a bad file does not stop the others
+      set.left_out.push_back(grid.error());  // a bad file does not stop the others, nor shift their numbers
+      ++set.numbered;
       continue;
     }
     if (!grid) {
@@ -159,7 +161,7 @@ Status load_folder(const fs::path& path, const ScanSetOptions& options, const Sc
     for (const std::string& remark : source->record().remarks) {
       tell((*grid)->source + ": " + remark, options);
     }
-    StationScan prepared = prepare_scan(static_cast<int>(set.scans.size()), std::move(**grid), set.pins);
+    StationScan prepared = prepare_scan(set.numbered++, std::move(**grid), set.pins);
     grid->reset();
     std::error_code not_there;
     prepared.read_from = fs::absolute(source->record().file, not_there).lexically_normal();
@@ -191,7 +193,8 @@ Status tell_tips_of_no_scan(const ScanSet& set, const ScanSetOptions& options) {
     }
     std::ranges::transform(*stored, std::back_inserter(ids), &StoredScan::id);
   } else {
-    std::ranges::transform(set.scans, std::back_inserter(ids), &StationScan::id);
+    ids.resize(static_cast<std::size_t>(set.numbered));
+    std::iota(ids.begin(), ids.end(), 0);
   }
   if (const auto fault = tips_of_no_scan(*set.pins, ids, options.pins_file.string())) {
     tell(fault->line(), options);

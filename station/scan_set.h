@@ -24,8 +24,10 @@ struct ScanSet {
   std::vector<ScanPose> poses;     ///< as stored; empty for a folder
   std::optional<PinSet> pins;
   std::optional<Rig> rig;
-  OperatorWord word;                  ///< hints and locks of a session
-  std::vector<Error> left_out;        ///< scans or files that cannot be read, one error each
+  OperatorWord word;            ///< hints and locks of a session
+  std::vector<Error> left_out;  ///< scans or files that cannot be read, one error each
+  /// Of a folder: scans, and files that cannot be read, each of which keeps the number that it would have.
+  int numbered = 0;
   std::optional<SessionStore> store;  ///< open when it is a session
   [[nodiscard]] bool is_session() const { return store.has_value(); }
 };

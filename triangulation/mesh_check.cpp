@@ -3,7 +3,10 @@
 #include "triangulation/mesh_check.h"
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <cmath>
+#include <cstdint>
 #include <functional>
 #include <iterator>
 #include <limits>
@@ -238,6 +241,66 @@ std::vector<Triangle> without_duplicates(std::span<const Triangle> faces, const 
   return out;
 }
 
+/// For each vertex the first one in the very same place, whose number may be its own; -0 and 0 are one place.
+/// Empty where no two lie in one, and of a job that is cancelled.
+std::vector<std::uint32_t> first_in_place(const Mesh& mesh, const JobContext& job) {
+  using Place = std::array<std::uint32_t, 3>;
+  std::vector<std::pair<Place, std::uint32_t>> by_place(mesh.positions.size());
+  parallel_for_each_index(
+      by_place.size(),
+      [&](std::size_t v) {
+        const Eigen::Vector3f& p = mesh.positions[v];
+        by_place[v] = {
+            {std::bit_cast<std::uint32_t>(p.x() + 0.0F), std::bit_cast<std::uint32_t>(p.y() + 0.0F),
+             std::bit_cast<std::uint32_t>(p.z() + 0.0F)},
+            static_cast<std::uint32_t>(v)};
+      },
+      kGrain);
+  parallel_sort(by_place.begin(), by_place.end(), std::less<>{}, job);
+  const auto is_same = [](const auto& a, const auto& b) { return a.first == b.first; };
+  if (job.cancelled() || std::ranges::adjacent_find(by_place, is_same) == by_place.end()) {
+    return {};
+  }
+  std::vector<std::uint32_t> first(by_place.size());
+  for (std::size_t k = 0; k < by_place.size(); ++k) {
+    const bool again = k > 0 && is_same(by_place[k], by_place[k - 1]);
+    first[by_place[k].second] = again ? first[by_place[k - 1].second] : by_place[k].second;
+  }
+  return first;
+}
+
+/// Of the faces that lie in the same three places those beyond the first, but for duplicates.
+std::size_t count_repeated(const Mesh& mesh, const JobContext& job) {
+  const std::vector<std::uint32_t> first = first_in_place(mesh, job);
+  if (first.empty()) {
+    return 0;
+  }
+  std::vector<std::uint8_t> shared(first.size(), 0);
+  for (std::size_t v = 0; v < first.size(); ++v) {
+    if (first[v] != v) {
+      shared[v] = shared[first[v]] = 1;
+    }
+  }
+  std::vector<std::pair<Triangle, Triangle>> faces;  // by place, and as they are
+  for (const Triangle& f : mesh.faces) {
+    if (has_three_corners(f, first.size()) && (shared[f[0]] | shared[f[1]] | shared[f[2]]) != 0) {
+      Triangle places{first[f[0]], first[f[1]], first[f[2]]};
+      Triangle corners = f;
+      std::ranges::sort(places);
+      std::ranges::sort(corners);
+      if (places[0] != places[1] && places[1] != places[2]) {  // else it has no area, and is counted so
+        faces.emplace_back(places, corners);
+      }
+    }
+  }
+  parallel_sort(faces.begin(), faces.end(), std::less<>{}, job);
+  std::size_t count = 0;
+  for (std::size_t k = 1; k < faces.size() && !job.cancelled(); ++k) {
+    count += faces[k].first == faces[k - 1].first && faces[k].second != faces[k - 1].second ? 1 : 0;
+  }
+  return count;
+}
+
 MeshReport check(const Mesh& mesh, bool with_parts, const JobContext& job) {
   MeshReport report;
   report.vertices = mesh.positions.size();
@@ -274,6 +337,9 @@ MeshReport check_manifold(const Mesh& mesh) {
 
 MeshReport check_mesh(const Mesh& mesh, const JobContext& job, const CountWork& counted) {
   MeshReport report = check(mesh, true, job);  // gives its memory back before what needs as much again
+  if (!job.cancelled()) {
+    report.repeated_faces = count_repeated(mesh, job);
+  }
   if (!job.cancelled()) {
     std::vector<Triangle> different;
     std::span<const Triangle> faces = mesh.faces;

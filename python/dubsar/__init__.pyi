@@ -105,6 +105,7 @@ class MeshReport(TypedDict):
     inconsistent_faces: int
     degenerate_faces: int
     duplicate_faces: int
+    repeated_faces: int
     self_intersections: int
     unreferenced_vertices: int
     area_mm2: float

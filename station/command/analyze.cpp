@@ -2,8 +2,6 @@
 // Copyright The Dubsar developers
 // dubsar analyze: the wedges of a mesh.
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
@@ -12,7 +10,6 @@
 #include <optional>
 #include <vector>
 
-#include "analysis/tablet_size.h"
 #include "archive/wedge_drawing.h"
 #include "core/log.h"
 #include "core/stage_times.h"
@@ -21,6 +18,7 @@
 #include "formats/mesh_io.h"
 #include "station/analysis.h"
 #include "station/command/analyze.h"
+#include "station/command/mesh_unit.h"
 #include "station/command/option_checks.h"
 #include "station/command/outputs.h"
 #include "station/done_stamp.h"
@@ -36,6 +34,9 @@ nlohmann::ordered_json summary_json(const AnalyzeArguments& arguments, const Wed
                               {"mesh", file.mesh},
                               {"count", file.wedges.size()},
                               {"rejected", file.rejected.size()}};
+  if (!file.unit_assumed.empty()) {
+    json["unit_assumed"] = file.unit_assumed;
+  }
   if (!arguments.mesh_out.empty()) {
     json["mesh_out"] = arguments.mesh_out;
   }
@@ -58,36 +59,6 @@ Status draw_pictures(const std::filesystem::path& folder, const Mesh& mesh, cons
     return written;
   }
   return write_six_view_picture(folder / "wedges.png", coloured, lies, job);
-}
-
-/// The tip of a stylus.
-constexpr double kLeastAcrossMm = 0.1;
-
-/// What the reader took the file's numbers for: it may say so itself.
-double mm_per_number(const std::string& file, double across_mm) {
-  const Result<Mesh> numbers = across_mm > 0 ? read_mesh(file, {.mm_per_unit = 1.0}) : Result<Mesh>();
-  const double across = numbers ? size_across_mm(*numbers) : 0;
-  return across > 0 ? across_mm / across : 1.0;
-}
-
-/// Nobody presses a stylus into a tablet a tenth of a millimetre across: without --unit its numbers are
-/// something else.
-Status check_size(const AnalyzeArguments& arguments, const Mesh& mesh) {
-  const double across_mm = size_across_mm(mesh);
-  const auto likelier = arguments.unit.empty()
-                            ? likelier_units(across_mm, mm_per_number(arguments.in, across_mm))
-                            : std::vector<std::string_view>();
-  if (!likelier.empty()) {
-    const std::string words = fmt::format("{}", fmt::join(likelier, " or "));
-    return bad_input(arguments.in, fmt::format("it would be {:.3g} mm across", across_mm),
-                     fmt::format("its numbers look like {}: say so with --unit {}, or confirm what they are",
-                                 words, words));
-  }
-  if (arguments.unit.empty() && across_mm > 0 && across_mm < kLeastAcrossMm) {
-    return bad_input(arguments.in, fmt::format("it would be {:.3g} mm across", across_mm),
-                     "nothing inscribed is that small: look what its numbers are and say so with --unit");
-  }
-  return check_measurable(mesh, arguments.in);
 }
 
 Status write_extras(const AnalyzeArguments& arguments, const Mesh& mesh, const Analysis& analysis,
@@ -266,18 +237,15 @@ Result<int> analyze(const AnalyzeArguments& arguments, CommandContext& context) 
     }
   }
   const auto start = std::chrono::steady_clock::now();
-  Result<Mesh> mesh = read_mesh(
-      arguments.in, {.mm_per_unit = arguments.unit.empty() ? std::nullopt : mm_per_unit(arguments.unit)});
-  if (!mesh) {
-    return std::unexpected(mesh.error());
+  Result<MeshInItsUnit> read = read_mesh_in_its_unit(arguments.in, arguments.unit, context.job);
+  if (!read) {
+    return std::unexpected(read.error());
   }
-  if (const Status sized = check_size(arguments, *mesh); !sized) {
-    return std::unexpected(sized.error());
-  }
-  face_outwards(&*mesh, arguments.in);
+  Mesh& mesh = read->mesh;
+  face_outwards(&mesh, arguments.in);
   const double reading_s = seconds_since(start);
   const AnalysisOptions options = options_of(arguments, *said);
-  Result<Analysis> analysis = analyze_mesh(*mesh, options, context.job);
+  Result<Analysis> analysis = analyze_mesh(mesh, options, context.job);
   if (!analysis) {
     Error error = analysis.error();
     error.where = error.where.empty() ? arguments.in : error.where;
@@ -297,6 +265,7 @@ Result<int> analyze(const AnalyzeArguments& arguments, CommandContext& context) 
                                           : std::filesystem::path(arguments.in).filename().string(),
                               options, *analysis);
   file.label = read_mesh_label(arguments.in);
+  file.unit_assumed = read->unit_assumed;
   if (const Status started = work ? work->start() : Status(); !started) {
     return std::unexpected(started.error());
   }
@@ -306,7 +275,7 @@ Result<int> analyze(const AnalyzeArguments& arguments, CommandContext& context) 
     }
   }
   if (const Status written =
-          write_outputs(arguments, file, *mesh, *analysis, work ? &*work : nullptr, context.job);
+          write_outputs(arguments, file, mesh, *analysis, work ? &*work : nullptr, context.job);
       !written) {
     Error error = written.error();
     if (arguments.corrected) {
@@ -338,7 +307,8 @@ void add_analyze_options(CLI::App& verb, AnalyzeArguments& arguments) {
           "--exit", arguments.exits,
           "where an inner edge ends: surface, at the free surface (unless said); extent, as far as seen")
       ->check(CLI::IsMember({"surface", "extent"}));
-  verb.add_option("--unit", arguments.unit, "what the file's numbers are; default: its own word, else mm")
+  verb.add_option("--unit", arguments.unit,
+                  "what the file's numbers are; default: its own word, else mm, or what its size tells")
       ->check(CLI::IsMember(std::vector<std::string>(kLengthUnits.begin(), kLengthUnits.end())));
   verb.add_option("--pictures", arguments.pictures,
                   "a folder for the surface fields and the wedges as coloured PLY and PNG");

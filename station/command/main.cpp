@@ -58,6 +58,15 @@ Result<int> with_output_written(Result<int> status) {
               "free some space, or let it go elsewhere");
 }
 
+/// What is stopped deep within does not know of what.
+Error told_in_full(Error error, const CLI::App& app) {
+  if (error.kind == ErrorKind::kCancelled) {
+    error.where = error.where.empty() ? subject_of(app) : error.where;
+    error.mend = error.mend.empty() ? "give the same command again to have it done" : error.mend;
+  }
+  return error;
+}
+
 int run(int argc, char** argv) {
   CLI::App app("Dubsar: the station beside a laser scanner for cuneiform tablets", "dubsar");
   app.set_version_flag("--version", DUBSAR_VERSION);
@@ -88,7 +97,13 @@ int run(int argc, char** argv) {
     // The parser may have stopped before it came to --json.
     json = json || std::find(argv, argv + argc, std::string_view("--json")) != argv + argc;
     const Error wrong{ErrorKind::kUsage, bad.what(), {}, "see dubsar --help, or dubsar VERB --help"};
-    return report(unknown_verb(app).value_or(wrong), json);
+    const bool left_over = dynamic_cast<const CLI::ExtrasError*>(&bad) != nullptr;
+    const std::vector<std::string> rest = app.remaining(true);
+    const bool option_first = !rest.empty() && rest.front().starts_with('-');
+    std::optional<Error> better = option_first ? unknown_option(app) : unknown_verb(app);
+    better = better ? better : option_first ? unknown_verb(app) : unknown_option(app);
+    better = better || !left_over ? better : surplus_words(app);
+    return report(better.value_or(wrong), json);
   }
   if (const std::optional<Error> empty = empty_option(app)) {
     return report(*empty, json);
@@ -108,7 +123,7 @@ int run(int argc, char** argv) {
       log_info(fmt::format("memory was short: up to {:.1f} GiB lay in files meanwhile, which takes longer",
                            static_cast<double>(bytes) / (1U << 30U)));
     }
-    return status ? *status : report(status.error(), json);
+    return status ? *status : report(told_in_full(status.error(), app), json);
   } catch (const std::bad_alloc&) {
     return report(
         {ErrorKind::kInternal, "out of memory", {}, "close other programs or use fewer scans at once"}, json);

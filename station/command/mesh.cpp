@@ -5,6 +5,8 @@
 #include <cstdio>
 #include <filesystem>
 #include <memory>
+#include <string>
+#include <vector>
 
 #include "analysis/cross_section.h"
 #include "archive/wedge_table.h"
@@ -39,18 +41,21 @@ struct MeshOptions {
   bool turn_over = false;
 };
 
-Result<Mesh> read(const MeshOptions& options, const CommandContext& context) {
-  return read_mesh(
-      options.in,
-      {.mm_per_unit = options.unit.empty() ? std::nullopt : mm_per_unit(options.unit), .job = &context.job});
+/// `passed_over`: where it is given, MeshReadOptions::passed_over.
+Result<Mesh> read(const MeshOptions& options, const CommandContext& context,
+                  std::vector<std::string>* passed_over = nullptr) {
+  return read_mesh(options.in,
+                   {.mm_per_unit = options.unit.empty() ? std::nullopt : mm_per_unit(options.unit),
+                    .passed_over = passed_over,
+                    .job = &context.job});
 }
 
 /// With what the file that was read says of itself, and a word on what the new one cannot hold.
-Status write(const MeshOptions& options, const Mesh& mesh) {
+Status write(const MeshOptions& options, const Mesh& mesh, const std::vector<std::string>& passed_over) {
   if (const Status written = write_mesh(options.out, mesh, read_mesh_label(options.in)); !written) {
     return written;
   }
-  if (const std::optional<Error> lost = mesh_losses(mesh, options.out, "keep " + options.in)) {
+  if (const std::optional<Error> lost = mesh_losses(mesh, options.out, "keep " + options.in, passed_over)) {
     log_warning(lost->line());
   }
   return {};
@@ -82,7 +87,8 @@ Result<int> check(const MeshOptions& options, CommandContext& context) {
 }
 
 Result<int> convert(const MeshOptions& options, CommandContext& context) {
-  Result<Mesh> mesh = read(options, context);
+  std::vector<std::string> passed_over;
+  Result<Mesh> mesh = read(options, context, &passed_over);
   if (!mesh) {
     return std::unexpected(mesh.error());
   }
@@ -96,7 +102,7 @@ Result<int> convert(const MeshOptions& options, CommandContext& context) {
     }
     log_warning(fault->line());
   }
-  if (const Status written = write(options, *mesh); !written) {
+  if (const Status written = write(options, *mesh, passed_over); !written) {
     return std::unexpected(written.error());
   }
   const LeftOut out = left_out_of(*mesh, options.out);
@@ -161,7 +167,8 @@ Result<int> section(const MeshOptions& options, CommandContext& context) {
 
 /// What a selection of the viewer holds: a mesh, or a table of its wedges.
 Result<int> part(const MeshOptions& options, CommandContext& context) {
-  const Result<Mesh> mesh = read(options, context);
+  std::vector<std::string> passed_over;
+  const Result<Mesh> mesh = read(options, context, &passed_over);
   if (!mesh) {
     return std::unexpected(mesh.error());
   }
@@ -198,7 +205,7 @@ Result<int> part(const MeshOptions& options, CommandContext& context) {
     return wedges.empty() ? 1 : 0;
   }
   const Mesh out = part_of(*mesh, *selection);
-  if (const Status written = write(options, out); !written) {
+  if (const Status written = write(options, out, passed_over); !written) {
     return std::unexpected(written.error());
   }
   if (context.json) {

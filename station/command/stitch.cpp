@@ -30,6 +30,7 @@
 #include "station/mesh_json.h"
 #include "station/offline.h"
 #include "station/outward_faces.h"
+#include "station/poses_by_id.h"
 #include "station/poses_scale.h"
 #include "station/tablet_flags.h"
 #include "station/tablet_label.h"
@@ -84,6 +85,25 @@ Status leave_out_foreign(const ScanSetArguments& arguments, const Taken& taken, 
   return set ? Status() : std::unexpected(set.error());
 }
 
+/// The scans' numbers and names alone; what there is to say of their files is said when they are taken.
+Result<ScanSet> names_of(const ScanSetArguments& arguments, CommandContext& context) {
+  ScanSetOptions reading = arguments.reading();
+  reading.again = true;
+  std::vector<StationScan> names;
+  const auto take = [&](const ScanSet&, const StationScan& scan) -> Status {
+    StationScan& name = names.emplace_back();
+    name.id = scan.id;
+    name.file = scan.file;
+    name.read_from = scan.read_from;
+    return {};
+  };
+  Result<ScanSet> set = visit_scan_set(arguments.path, reading, take, context.job);
+  if (set) {
+    set->scans = std::move(names);
+  }
+  return set;
+}
+
 /// Scan by scan, where the poses are known beforehand. One is made ready while the next is read: no more than
 /// two grids are in memory.
 Result<Taken> take_scan_by_scan(const ScanSetArguments& arguments, Stitcher& stitcher,
@@ -98,6 +118,13 @@ Result<Taken> take_scan_by_scan(const ScanSetArguments& arguments, Stitcher& sti
       return std::unexpected(read.error());
     }
     file = std::move(*read);
+    if (!SessionStore::is_session(arguments.path) && may_have_other_names(*file, arguments.path)) {
+      const Result<ScanSet> names = names_of(arguments, context);
+      if (!names) {
+        return std::unexpected(names.error());
+      }
+      let_numbers_tell(names->scans, arguments.poses, &*file);
+    }
   }
   Taken taken;
   std::size_t with_pose = 0;

@@ -103,6 +103,15 @@ Status check_asked(const CorrectArguments& a) {
   return {};
 }
 
+/// The unit that the mesh is measured in: the one that is said, or that its analysis took it for.
+std::optional<double> mm_per_unit_of(const CorrectArguments& a) {
+  if (!a.analyze.unit.empty()) {
+    return mm_per_unit(a.analyze.unit);
+  }
+  const Result<WedgeFile> file = read_wedges(a.analyze.out);
+  return file ? mm_per_unit(file->unit_assumed) : std::nullopt;
+}
+
 /// The correction that is asked for; its kind follows from the options.
 Result<WedgeCorrection> asked_for(const CorrectArguments& a) {
   WedgeCorrection out;
@@ -121,8 +130,7 @@ Result<WedgeCorrection> asked_for(const CorrectArguments& a) {
     return out;
   }
   if (!a.add.empty()) {
-    const Result<Mesh> mesh = read_mesh(
-        a.analyze.in, {.mm_per_unit = a.analyze.unit.empty() ? std::nullopt : mm_per_unit(a.analyze.unit)});
+    const Result<Mesh> mesh = read_mesh(a.analyze.in, {.mm_per_unit = mm_per_unit_of(a)});
     if (!mesh) {
       return std::unexpected(mesh.error());
     }

@@ -35,10 +35,88 @@ std::size_t letters_apart(const std::string& a, const std::string& b) {
   return row.back();
 }
 
+/// More is another word.
+constexpr std::size_t kSlips = 2;
+
+/// The verb with those that it belongs to: "dubsar mesh check".
+std::string whole_name(const CLI::App& verb) {
+  return verb.get_parent() == nullptr ? verb.get_name()
+                                      : whole_name(*verb.get_parent()) + " " + verb.get_name();
+}
+
+/// -5 and -.5 are numbers, and - alone is a file's name.
+bool is_option(const std::string& word) {
+  return word.size() > 1 && word[0] == '-' && word[1] != '.' && (word[1] < '0' || word[1] > '9') &&
+         word != "--";
+}
+
+/// "--unit" of "--unit=m"
+std::string option_name(const std::string& word) {
+  return word.substr(0, word.find('='));
+}
+
+/// As they are written, of the verb and of those that it belongs to.
+std::vector<std::string> option_names(const CLI::App& verb) {
+  std::vector<std::string> names;
+  for (const CLI::App* app = &verb; app != nullptr; app = app->get_parent()) {
+    for (const CLI::Option* option : app->get_options()) {
+      for (const std::string& name : option->get_lnames()) {
+        names.push_back("--" + name);
+      }
+      for (const std::string& name : option->get_snames()) {
+        names.push_back("-" + name);
+      }
+    }
+  }
+  return names;
+}
+
 }  // namespace
 
+std::optional<Error> unknown_option(const CLI::App& app) {
+  const CLI::App& verb = chosen_verb(app);
+  const std::vector<std::string> rest = app.remaining(true);
+  const auto word = std::ranges::find_if(rest, is_option);
+  if (word == rest.end()) {
+    return std::nullopt;
+  }
+  const std::string name = option_name(*word);
+  std::size_t least = std::min(kSlips + 1, name.size() - 1);
+  std::string meant;
+  for (const std::string& one : option_names(verb)) {
+    if (const std::size_t apart = letters_apart(name, one); one.size() > 2 && apart < least) {
+      least = apart;
+      meant = one;
+    }
+  }
+  return Error{ErrorKind::kUsage, "there is no option " + name, whole_name(verb),
+               meant.empty() ? "see " + whole_name(verb) + " --help" : "do you mean " + meant + "?"};
+}
+
+std::optional<Error> surplus_words(const CLI::App& app) {
+  std::string all;
+  for (const std::string& word : app.remaining(true)) {
+    all += (all.empty() ? "" : " ") + word;
+  }
+  if (all.empty()) {
+    return std::nullopt;
+  }
+  const std::string verb = whole_name(chosen_verb(app));
+  return Error{ErrorKind::kUsage, "nothing is known of: " + all, verb, "see " + verb + " --help"};
+}
+
+std::string subject_of(const CLI::App& app) {
+  const CLI::App& verb = chosen_verb(app);
+  for (const CLI::Option* option : verb.get_options()) {
+    if (option->get_positional() && option->count() > 0) {
+      return option->results().front();
+    }
+  }
+  const CLI::Option* out = verb.get_option_no_throw("--out");
+  return out != nullptr && out->count() > 0 ? out->results().front() : whole_name(verb);
+}
+
 std::optional<Error> unknown_verb(const CLI::App& app) {
-  constexpr std::size_t kSlips = 2;
   const CLI::App& verb = chosen_verb(app);
   const std::vector<const CLI::App*> known = verb.get_subcommands([](const CLI::App*) { return true; });
   const std::vector<std::string> rest = app.remaining(true);

@@ -102,6 +102,13 @@ TEST(DeviceUri, WhatCannotBeOpenedIsAnsweredWithTheMend) {
   const auto option = open_device(parse_device_uri("sim:?sede=4").value(), registry);
   ASSERT_FALSE(option);
   EXPECT_THAT(option.error().line(), HasSubstr("takes seed, size, spacing"));
+  EXPECT_THAT(option.error().line(), ::testing::Not(HasSubstr("%3F")));
+  const auto name = open_device(parse_device_uri("replay:what?x=1").value(), registry);
+  ASSERT_FALSE(name);
+  EXPECT_THAT(name.error().line(), HasSubstr("replay:what: no option x; "));
+  EXPECT_THAT(name.error().line(),
+              HasSubstr("in the name of a folder or file write %3F for ? and %25 for %"));
+  EXPECT_THAT(parse_device_uri("replay:what?x").error().line(), HasSubstr("write %3F for ?"));
 }
 
 }  // namespace

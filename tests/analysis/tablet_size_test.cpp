@@ -18,6 +18,7 @@ TEST(TabletSize, IsThatOfTheVerticesInUse) {
   Mesh mesh = shapes::box({3, 2, 6}, 2);
   mesh.positions.emplace_back(1000, 0, 0);
   EXPECT_NEAR(size_across_mm(mesh), 14, 1e-4);
+  EXPECT_TRUE(size_mm(mesh).isApprox(Eigen::Vector3d(6, 4, 12))) << size_mm(mesh);
   EXPECT_EQ(size_across_mm({}), 0);
 }
 
@@ -29,6 +30,17 @@ TEST(TabletSize, TellsTheUnitWhereTheNumbersCannotBeMillimetres) {
   EXPECT_THAT(likelier_units(29834, 1000), ElementsAre("mm", "cm", "in"));  // a glTF file of no metres
   EXPECT_THAT(likelier_units(1e9, 1), IsEmpty());
   EXPECT_THAT(likelier_units(0, 1), IsEmpty());
+}
+
+TEST(TabletSize, OfUnitsThatFilesAreInOneAloneIsLikely) {
+  EXPECT_EQ(likely_unit(60, 1), std::nullopt) << "it is inscribed as it is";
+  EXPECT_EQ(likely_unit(0.06, 1), "m");
+  EXPECT_EQ(likely_unit(60000, 1), "um");
+  EXPECT_EQ(likely_unit(29834, 1000), "mm");
+  EXPECT_EQ(likely_unit(4, 1), std::nullopt) << "centimetres or inches: who knows";
+  EXPECT_EQ(likely_unit(0.884, 1), std::nullopt);
+  EXPECT_TRUE(is_inscribed_size(6) && is_inscribed_size(800));
+  EXPECT_FALSE(is_inscribed_size(5.9) || is_inscribed_size(801));
 }
 
 TEST(TabletSize, FarFromTheOriginPlacesAreCoarse) {

@@ -177,6 +177,16 @@ TEST(MeshColours, PlyHasThemOfSeveralTypes) {
             (Colours{{255, 4, 0}, {255, 0, 1}, {128, 127, 126}}));
 }
 
+TEST(MeshColours, PlyMayCallThemDiffuse) {
+  std::string properties = colour_properties("uchar");
+  for (const char* name : {" red", " green", " blue"}) {
+    properties.replace(properties.find(name), 1, " diffuse_");
+  }
+  EXPECT_EQ(
+      read_mesh_bytes(ply_with(properties, {"255 4 0", "3 2 1", "128 127 126"}), "a.ply").value().colours,
+      (Colours{{255, 4, 0}, {3, 2, 1}, {128, 127, 126}}));
+}
+
 TEST(MeshNormals, AreUnitVectorsWhateverTheFileHas) {
   const auto mesh = read_mesh_bytes(ply_with("property float nx\nproperty float ny\nproperty float nz\n",
                                              {"0 0 5", "nan 0 1", "0 0.0003 0.0004"}),

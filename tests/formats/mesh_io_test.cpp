@@ -152,6 +152,16 @@ TEST(MeshPly, ReadsTriangleStrips) {
   EXPECT_EQ(mesh->faces, (std::vector<std::array<std::uint32_t, 3>>{{0, 1, 2}, {2, 1, 3}, {4, 3, 2}}));
 }
 
+TEST(MeshPly, FacesOfOneOrTwoCornersStayAsFaults) {
+  const auto mesh = read_mesh_bytes(
+      "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
+      "element face 3\nproperty list uchar int vertex_indices\nend_header\n"
+      "0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n1 2\n2 0 1\n",
+      "a.ply");
+  ASSERT_TRUE(mesh) << line_of(mesh);
+  EXPECT_EQ(mesh->faces, (std::vector<std::array<std::uint32_t, 3>>{{0, 1, 2}, {2, 2, 2}, {0, 1, 1}}));
+}
+
 TEST(MeshPly, ReadsBigEndian) {
   std::string text = "ply\nformat binary_big_endian 1.0\n" + kSquare;
   for (const auto& [x, y] : {std::pair{0.0, 0.0}, {1.0, 0.0}, {1.0, 1.0}, {0.0, 1.0}}) {

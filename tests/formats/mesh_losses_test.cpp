@@ -73,6 +73,55 @@ TEST(MeshLosses, CompressionLeavesOutWhatIsOfNoFaceAndSaysSo) {
   EXPECT_FALSE(mesh_losses(mesh, "a.glb", "keep a.ply"));
 }
 
+TEST(MeshLosses, StlHasNoVerticesWithoutAFace) {
+  Mesh mesh = tetrahedron();
+  mesh.normals.clear();
+  mesh.positions.emplace_back(9, 9, 9);
+  const ScratchFolder folder;
+  ASSERT_TRUE(write_mesh(folder / "a.stl", mesh));
+  EXPECT_EQ(read_mesh(folder / "a.stl").value().positions.size(),
+            mesh.positions.size() - left_out_of(mesh, "a.stl").vertices);
+  EXPECT_EQ(mesh_losses(mesh, "a.stl", "keep a.ply")->what,
+            "STL holds no vertices without a face (1): left out");
+  mesh.faces.push_back({0, 1, 1});  // stays
+  EXPECT_EQ(left_out_of(mesh, "a.stl").faces, 0U);
+  EXPECT_FALSE(mesh_losses(mesh, "a.ply", "keep b.ply"));
+}
+
+std::vector<std::string> passed_over(const std::string& bytes, const std::string& name) {
+  std::vector<std::string> names;
+  const auto mesh = read_mesh_bytes(bytes, name, {.passed_over = &names});
+  EXPECT_TRUE(mesh) << line_of(mesh);
+  return names;
+}
+
+TEST(MeshLosses, WhatIsPassedOverIsNamedWhateverIsWritten) {
+  const std::string ply =
+      "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
+      "property uchar red\nproperty uchar green\nproperty uchar blue\nproperty uchar alpha\n"
+      "property float quality\nproperty float u\nproperty float v\nproperty float nx\n"
+      "element face 1\nproperty list uchar int vertex_indices\nproperty float quality\n"
+      "element edge 1\nproperty int vertex1\nproperty int vertex2\nelement material 0\nproperty int k\n"
+      "end_header\n0 0 0 1 2 3 255 0.5 0 0 1\n1 0 0 1 2 3 255 0.5 0 1 1\n0 1 0 1 2 3 255 0.5 1 0 1\n"
+      "3 0 1 2 7\n0 1\n";
+  const std::vector<std::string> names = passed_over(ply, "a.ply");
+  EXPECT_EQ(names, (std::vector<std::string>{"vertex alpha", "vertex quality", "texture coordinates",
+                                             "vertex nx", "face quality", "edge"}));
+  EXPECT_EQ(
+      mesh_losses(tetrahedron(), "b.ply", "keep a.ply", names)->line(),
+      "b.ply: what Dubsar does not read is left out: vertex alpha, vertex quality, texture coordinates, "
+      "vertex nx, face quality and edge; keep a.ply");
+  EXPECT_EQ(
+      mesh_losses(measured(), "b.obj", "keep a.ply", std::vector<std::string>{"edge"})->what,
+      "OBJ holds no reliability, sigma, scans or flags: left out, and what Dubsar does not read is left "
+      "out: edge");
+  EXPECT_EQ(passed_over(encode_mesh_ply(measured()), "a.ply"), std::vector<std::string>{});
+  EXPECT_EQ(passed_over("v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nf 1/1 2/1 3/1\n", "a.obj"),
+            std::vector<std::string>{kTextureCoordinates});
+  const std::vector<std::string> many(12, std::string(200, 'q'));
+  EXPECT_LT(mesh_losses(tetrahedron(), "b.ply", "keep a.ply", many)->line().size(), 600U);
+}
+
 TEST(MeshLosses, PlyHasEachOfThemByItself) {
   const Mesh all = measured();
   for (int only = 0; only < 4; ++only) {

@@ -153,6 +153,12 @@ TEST(PlyScan, AByteOrderMarkIsPassedOver) {
   expect_the_grid(std::get<RangeGrid>(scans->front()));
 }
 
+TEST(PlyScan, AnIndexOfMinusOneIsNoReturn) {
+  Parts parts;
+  parts.body = "0 0 0\n1 0 0.5\n0 1 0\n1 1 0\n1 0\n1 1\n1 -1\n1 2\n1 -1\n1 3\n";
+  expect_the_grid(grid_of(parts.text()));
+}
+
 TEST(PlyScan, WhatOldPrintfWroteForNoNumberIsNoReturn) {
   Parts parts;
   parts.grid.clear();
@@ -283,7 +289,11 @@ TEST(PlyScanHostile, EmptyTruncatedOrMislabelled) {
   EXPECT_THAT(line_of(read_scan_bytes("\xff\xd8\xff\xe0JFIF", "a.ply")), HasSubstr("a.ply: not a PLY file"));
   EXPECT_THAT(line_of(read_scan_bytes("ply\nformat ascii 1.0\n", "a.ply")),
               HasSubstr("ends within its PLY header"));
-  EXPECT_THAT(line_of(read_scan_bytes("x", "a.doc")), HasSubstr("a.doc: not a scan that Dubsar reads"));
+  EXPECT_THAT(line_of(read_scan_bytes("x", "a.doc")),
+              HasSubstr("a.doc: not a scan that Dubsar reads; give "));
+  EXPECT_THAT(line_of(read_scan_bytes("0 0 0\n", "a.CSV")),
+              HasSubstr("; rename .csv to .xyz where the lines"));
+  EXPECT_THAT(line_of(read_scan_bytes("PK", "scans.zip")), HasSubstr("; unpack the packed files"));
   Parts parts;
   parts.body.resize(10);
   EXPECT_THAT(line(parts), HasSubstr("claims 4 of element vertex, but only 10 bytes are left"));
@@ -328,9 +338,9 @@ TEST(PlyScanHostile, IndicesThatAreWrong) {
   Parts parts;
   parts.body.replace(parts.body.find("1 3\n"), 3, "1 4");
   EXPECT_THAT(line(parts), HasSubstr("range_grid 5 (line 21): vertex index 4 is not one of the 4 vertices"));
-  parts.body.replace(parts.body.find("1 4\n"), 3, "1 -1");
-  EXPECT_THAT(line(parts), HasSubstr("vertex index -1 is not one of"));
-  parts.body.replace(parts.body.find("1 -1\n"), 4, "1 nan");
+  parts.body.replace(parts.body.find("1 4\n"), 3, "1 -2");
+  EXPECT_THAT(line(parts), HasSubstr("vertex index -2 is not one of"));
+  parts.body.replace(parts.body.find("1 -2\n"), 4, "1 nan");
   EXPECT_THAT(line(parts), HasSubstr("vertex index nan is not one of"));
   parts.body.replace(parts.body.find("1 nan\n"), 5, "1 2.5");
   EXPECT_THAT(line(parts), HasSubstr("vertex index 2.5 is not one of"));

@@ -248,6 +248,21 @@ TEST(PointText, ReadsColumnsForWhatTheyAre) {
   EXPECT_EQ(all.rgb.size(), 3U);
 }
 
+TEST(PointText, LinesMayEndAsOnAnOldMacintosh) {
+  const PointCloud cloud = read_cloud("x y z i\r1 2 3 255\r\r4 5 6 51\r");
+  ASSERT_EQ(cloud.points.size(), 2U);
+  EXPECT_EQ(cloud.points[1], Eigen::Vector3f(4, 5, 6));
+  EXPECT_EQ(cloud.intensity, (std::vector<float>{1.0F, 0.2F}));
+  EXPECT_EQ(read_cloud("1,5 2,5 3,5\r4,5 5,5 6,5\r").points[1], Eigen::Vector3f(4.5F, 5.5F, 6.5F));
+  EXPECT_THAT(line_of(read_scan_bytes("1 2 3\r4 5\r", "a.xyz")),
+              HasSubstr("line 2: has 2 numbers where 3 belong"));
+  std::string many;
+  for (std::size_t k = 0; k < kLeastPointLines; ++k) {
+    many += "1 2 3\r";
+  }
+  EXPECT_EQ(kind_of_head(many, true, "a.txt"), FileKind::kScan);
+}
+
 TEST(PointText, NamesWhatIsWrong) {
   const auto line = [](const std::string& text) { return line_of(read_scan_bytes(text, "a.xyz")); };
   EXPECT_THAT(line(""), HasSubstr("a.xyz: the file is empty"));

@@ -49,6 +49,7 @@ TEST(WedgesJson, ReadsBackAllThatWasMeasured) {
   profile.kinds[4] = 1;
   profile.quantiles[3][8] = 2.5;
   file.profiles = {profile};
+  file.unit_assumed = "m";
   const std::string text = wedges_to_json(file);
   EXPECT_THAT(text, HasSubstr("\"exit_point_surface\""));
   EXPECT_THAT(text, HasSubstr("\"timings_s\""));
@@ -72,6 +73,9 @@ TEST(WedgesJson, ReadsBackAllThatWasMeasured) {
   EXPECT_NEAR(w.sigma.edge_slope_rad[2], 0.9, 1e-14);
   EXPECT_TRUE(std::isnan(w.sigma.length_mm[1]) && std::isnan(w.sigma.volume_mm3))
       << "nobody knows them of these exits";
+  EXPECT_EQ(back->unit_assumed, "m");
+  file.unit_assumed.clear();
+  EXPECT_THAT(wedges_to_json(file), ::testing::Not(HasSubstr("unit_assumed")));
   file.exits = ExitDefinition::kSurface;
   const auto surface = parse_wedges(wedges_to_json(file), "w");
   ASSERT_TRUE(surface);

@@ -117,15 +117,30 @@ TEST(AnalyzeCommand, SaysPlainlyThatThereAreNone) {
   EXPECT_TRUE(file->wedges.empty());
 }
 
-TEST(AnalyzeCommand, AsksForTheUnitAndRefusesWhatIsNoMesh) {
+TEST(AnalyzeCommand, TakesTheLikelyUnitAsksForOthersAndRefusesWhatIsNoMesh) {
   const test::TemporaryFolder folder;
   const auto at = [&](const char* name) { return (folder.path() / name).string(); };
   std::ofstream(at("metres.obj")) << "v 0 0 0\nv .03 0 0\nv .03 .03 0\nv 0 .03 0\nv .015 .015 .009\n"
                                      "f 1 2 5\nf 2 3 5\nf 3 4 5\nf 4 1 5\nf 1 3 2\nf 1 4 3\n";
-  const Outcome asked = run_command({"analyze", at("metres.obj"), "-o", at("w.json")});
-  EXPECT_EQ(asked.status, 2);
-  EXPECT_THAT(asked.err, HasSubstr("--unit m"));
+  const Outcome taken = run_command({"analyze", at("metres.obj"), "-o", at("w.json"), "--json"});
+  EXPECT_EQ(taken.status, 0) << taken.err;
+  EXPECT_THAT(taken.complaints(), ::testing::SizeIs(1));
+  EXPECT_THAT(taken.err,
+              HasSubstr("metres.obj: it would be 0.0434 mm across, which nothing inscribed is: its "
+                        "numbers are taken for m; confirm that with --unit m (30 x 30 x 9 mm)"));
+  EXPECT_EQ(taken.json()["unit_assumed"], "m");
+  EXPECT_EQ(read_wedges(at("w.json")).value().unit_assumed, "m");
+  EXPECT_EQ(run_command({"analyze", at("metres.obj"), "-o", at("w.json"), "--json"}).json()["unit_assumed"],
+            "m")
+      << "done before";
   EXPECT_EQ(run_command({"analyze", at("metres.obj"), "-o", at("w.json"), "--unit", "m"}).status, 0);
+  EXPECT_EQ(read_wedges(at("w.json")).value().unit_assumed, "");
+  std::ofstream(at("small.obj")) << "v 0 0 0\nv 3 0 0\nv 3 3 0\nv 0 3 0\nv 1.5 1.5 .9\n"
+                                    "f 1 2 5\nf 2 3 5\nf 3 4 5\nf 4 1 5\nf 1 3 2\nf 1 4 3\n";
+  const Outcome asked = run_command({"analyze", at("small.obj"), "-o", at("w.json")});
+  EXPECT_EQ(asked.status, 2);
+  EXPECT_THAT(asked.err, HasSubstr("say what its numbers are: repeat it with --unit cm (30 x 30 x 9 mm), "
+                                   "--unit mm (3 x 3 x 0.9 mm) or --unit in (76.2 x 76.2 x 22.9 mm)"));
   EXPECT_EQ(run_command({"analyze", at("metres.obj"), "-o", at("w.json"), "--unit", "cubit"}).status, 2);
   EXPECT_EQ(run_command({"analyze", at("nowhere.ply"), "-o", at("w.json")}).status, 2);
   EXPECT_EQ(run_command({"analyze", at("metres.obj")}).status, 2);
@@ -148,14 +163,18 @@ TEST(AnalyzeCommand, TheUnitThatIsAdvisedIsCountedFromTheOneThatTheFileNames) {
   std::ofstream(at("m.ply")) << "ply\nformat ascii 1.0\nobj_info unit m\n" << body;
   const Outcome asked = run_command({"analyze", at("m.ply"), "-o", at("w.json")});
   EXPECT_EQ(asked.status, 2);
-  EXPECT_THAT(asked.err, HasSubstr("its numbers look like mm or cm: say so with --unit mm"));
+  EXPECT_THAT(asked.err,
+              HasSubstr("repeat it with --unit cm (300 x 300 x 90 mm), --unit mm (30 x 30 x 9 mm)"));
   EXPECT_EQ(run_command({"analyze", at("m.ply"), "-o", at("w.json"), "--unit", "mm"}).status, 0);
   // glTF is in metres, however its name is written.
   std::ofstream(at("mm.ply")) << "ply\nformat ascii 1.0\n" << body;
   ASSERT_EQ(run_command({"mesh", "convert", at("mm.ply"), at("a.glb"), "--unit", "m"}).status, 0);
   std::filesystem::rename(at("a.glb"), at("A.GLB"));
   const Outcome upper = run_command({"analyze", at("A.GLB"), "-o", at("w.json")});
-  EXPECT_THAT(upper.err, HasSubstr("its numbers look like mm or cm: say so with --unit mm"));
+  EXPECT_EQ(upper.status, 0) << upper.err;
+  EXPECT_THAT(upper.err,
+              HasSubstr("its numbers are taken for mm; confirm that with --unit mm (30 x 30 x 9 mm), "
+                        "or say what they are: --unit cm (300 x 300 x 90 mm) or --unit in (762 x "));
 }
 
 }  // namespace

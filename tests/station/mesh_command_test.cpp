@@ -5,7 +5,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <fstream>
+#include <utility>
 
 #include "formats/mesh_io.h"
 #include "tests/station/support/command.h"
@@ -96,6 +98,48 @@ TEST_F(MeshCommand, WhatAFormatCannotHoldIsToldAndNotMadeUpAfterwards) {
   EXPECT_THAT(bytes_of(at("copy.ply")), HasSubstr("\ncomment Mesh of Dubsar\n"));
   EXPECT_EQ(run_command({"mesh", "convert", at("tent.obj"), at("theirs.ply")}).status, 0);
   EXPECT_THAT(bytes_of(at("theirs.ply")), HasSubstr("\ncomment Converted by Dubsar from tent.obj\n"));
+}
+
+TEST_F(MeshCommand, WhatItDoesNotReadIsNamedOnTheOneLine) {
+  std::ofstream(at("quality.ply"))
+      << "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n"
+         "property float quality\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n"
+         "0 0 0 1\n9 0 0 1\n0 9 0 1\n0 0 9 1\n3 0 1 2\n";
+  for (const auto& [name, vertices] : {std::pair{"copy.ply", 4}, {"copy.stl", 3}}) {
+    const Outcome copied = run_command({"mesh", "convert", at("quality.ply"), at(name), "--json"});
+    EXPECT_EQ(copied.json()["vertices"], vertices);
+    EXPECT_THAT(copied.complaints(),
+                ElementsAre(HasSubstr("what Dubsar does not read is left out: vertex quality; keep ")));
+    EXPECT_EQ(copied.err.find("vertices without a face (1)") != std::string::npos, vertices == 3)
+        << copied.err;
+  }
+}
+
+/// A strip that is turned over once on its way round.
+TEST_F(MeshCommand, AStripThatTurnsIntoItselfIsNotToldToBeTurnedOver) {
+  std::ofstream strip(at("strip.obj"));
+  constexpr int kSteps = 24;
+  for (int k = 0; k < kSteps; ++k) {
+    const double round = 2 * std::acos(-1.0) * k / kSteps;
+    for (const double side : {-4.0, 4.0}) {
+      const double radius = 20 + side * std::cos(0.5 * round);
+      strip << "v " << radius * std::cos(round) << ' ' << radius * std::sin(round) << ' '
+            << side * std::sin(0.5 * round) << '\n';
+    }
+  }
+  for (int k = 0; k < kSteps; ++k) {
+    const bool last = k + 1 == kSteps;
+    const int a = 2 * k + 1, b = a + 1, c = last ? 2 : a + 2, d = last ? 1 : a + 3;
+    strip << "f " << b << ' ' << c << ' ' << a << "\nf " << d << ' ' << c << ' ' << b << '\n';
+  }
+  strip.close();
+  const Outcome checked = run_command({"mesh", "check", at("strip.obj"), "--json"});
+  EXPECT_EQ(checked.status, 1) << checked.err;
+  EXPECT_EQ(checked.json()["inconsistent_faces"], 2);
+  EXPECT_EQ(checked.json()["repeated_faces"], 0);
+  EXPECT_EQ(checked.json()["inside_out"], true) << "as a whole";
+  EXPECT_THAT(checked.err, HasSubstr("some of its faces run against their neighbours: mend these first"));
+  EXPECT_EQ(checked.err.find("--turn-over"), std::string::npos) << checked.err;
 }
 
 TEST_F(MeshCommand, ACutThatMeetsNothingWritesNothing) {

@@ -7,6 +7,8 @@
 
 #include <filesystem>
 #include <fstream>
+#include <string>
+#include <vector>
 
 #include "acquisition/session_store.h"
 #include "formats/poses_json.h"
@@ -128,6 +130,46 @@ TEST_F(StitchLeftOut, AScanThatWasUnsureIsNotMissed) {
   harm(3);
   std::ofstream(at("scans") + "/other.ply") << "no scan";
   EXPECT_EQ(with_poses().status, 0) << "the mesh is of all that the poses have registered";
+}
+
+TEST_F(StitchLeftOut, AFileThatCannotBeReadKeepsItsNumber) {
+  harm(1);
+  const Outcome plain = run_command({"register", at("scans"), "--json"});
+  EXPECT_EQ(plain.status, 1) << plain.err;
+  std::vector<int> ids;
+  for (const nlohmann::json& scan : plain.json()["scans"]) {
+    ids.push_back(scan["id"]);
+  }
+  EXPECT_THAT(ids, ::testing::ElementsAre(0, 2, 3));
+  for (ScanPose& pose : poses_) {
+    pose.file.clear();  // the numbers alone tell
+  }
+  ASSERT_TRUE(write_poses(at("numbers.json"), poses_));
+  const Outcome placed = run_command({"register", at("scans"), "--from-poses", at("numbers.json"), "--json"});
+  EXPECT_EQ(placed.json()["scans"][1]["status"], "registered") << placed.out;
+}
+
+TEST_F(StitchLeftOut, NumbersTellWhereNoNameDoes) {
+  for (ScanPose& pose : poses_) {
+    pose.file = "before/renaming_" + std::to_string(pose.id) + ".ply";
+  }
+  ASSERT_TRUE(write_poses(at("renamed.json"), poses_));
+  const Outcome by_number = stitched("scans", {"--poses", at("renamed.json")});
+  EXPECT_EQ(by_number.status, 0) << by_number.err;
+  EXPECT_EQ(by_number.json()["scans"], 3);
+  EXPECT_THAT(by_number.err, HasSubstr("the poses are taken by `id`"));
+  EXPECT_THAT(by_number.complaints(), SizeIs(2)) << "that, and the unsure one: " << by_number.err;
+  EXPECT_EQ(run_command({"register", at("scans"), "--from-poses", at("renamed.json"), "--json"})
+                .json()["scans"][1]["status"],
+            "registered");
+
+  poses_[1].file = test::scan_name(1);  // then the other names are wrong
+  ASSERT_TRUE(write_poses(at("some.json"), poses_));
+  EXPECT_EQ(stitched("scans", {"--poses", at("some.json")}).json()["scans"], 1);
+  poses_[1].file = "another.ply";
+  poses_[1].id = 7;  // they do not fit all
+  ASSERT_TRUE(write_poses(at("seven.json"), poses_));
+  EXPECT_EQ(stitched("scans", {"--poses", at("seven.json")}).status, 2);
 }
 
 TEST_F(StitchLeftOut, FallsShortWithoutAFileOfAFolder) {

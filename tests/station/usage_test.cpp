@@ -118,6 +118,23 @@ TEST(CommandUsage, AVerbThatIsMistypedOrMissingIsAnsweredWithThoseThatThereAre) 
   }
 }
 
+TEST(CommandUsage, AnOptionThatIsMistypedIsAnsweredWithTheOneThatIsMeant) {
+  const std::vector<std::pair<Arguments, const char*>> said{
+      {{"register", "s", "--unti", "m"}, "dubsar register: there is no option --unti; do you mean --unit?"},
+      {{"register", "s", "--unti=m"}, "dubsar register: there is no option --unti; do you mean --unit?"},
+      {{"mesh", "check", "m.ply", "--jsn"},
+       "dubsar mesh check: there is no option --jsn; do you mean --json?"},
+      {{"stitch", "s", "--outt", "m.ply"}, "dubsar stitch: there is no option --outt; do you mean --out?"},
+      {{"plan", "--frobnicate", "s"}, "dubsar plan: there is no option --frobnicate; see dubsar plan --help"},
+      {{"register", "s", "t", "u"}, "dubsar register: nothing is known of: t u; see dubsar register --help"}};
+  for (const auto& [words, answer] : said) {
+    const Outcome outcome = run_command(words);
+    EXPECT_EQ(outcome.status, 2);
+    EXPECT_THAT(outcome.err, HasSubstr(answer));
+    EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << outcome.err;
+  }
+}
+
 TEST(CommandUsage, AnEmptyTextIsNoNameAndNoPlace) {
   const std::vector<std::pair<Arguments, const char*>> said{
       {{"export", "s", "--to", ""}, "--to: nothing is said"},

@@ -143,6 +143,31 @@ TEST(MeshCheck, DegenerateDuplicateAndForeignIndices) {
   EXPECT_EQ(check_mesh(twice).duplicate_faces, 1U);
 }
 
+TEST(MeshCheck, FacesThatRepeatOthersByPlaceAreCounted) {
+  Mesh shells = tetrahedron();
+  shells.positions.insert(shells.positions.end(), {{-0.0F, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}});
+  EXPECT_EQ(check_mesh(shells).repeated_faces, 0U) << "vertices alone repeat no face";
+  for (const auto& f : tetrahedron().faces) {
+    shells.faces.push_back({f[1] + 4, f[2] + 4, f[0] + 4});
+  }
+  const MeshReport report = check_mesh(shells);
+  EXPECT_EQ(report.repeated_faces, 4U);
+  EXPECT_EQ(report.duplicate_faces, 0U);
+  EXPECT_EQ(report.components, 2U);
+  EXPECT_FALSE(report.is_manifold());
+  shells.positions[4].x() = 1e-6F;
+  EXPECT_EQ(check_mesh(shells).repeated_faces, 1U) << "that of the other three corners";
+
+  Mesh twice = tetrahedron();
+  twice.faces.push_back({2, 1, 0});
+  EXPECT_EQ(check_mesh(twice).repeated_faces, 0U) << "it is a duplicate, and counted as that";
+  Mesh thrice = twice;
+  thrice.positions.emplace_back(0, 0, 0);
+  thrice.faces.push_back({4, 2, 1});  // a face that shares two vertices with the two of its place
+  thrice.faces.push_back({4, 0, 1});  // has no area
+  EXPECT_EQ(check_mesh(thrice).repeated_faces, 1U);
+}
+
 TEST(MeshCheck, OfDuplicatesOneCutsOthers) {
   Mesh mesh;
   mesh.positions = {{0, 0, 0}, {4, 0, 0}, {0, 4, 0}, {1, 1, -1}, {1, 1, 1}, {9, 9, 1}};

@@ -88,6 +88,8 @@ constexpr EnginePhrase kDrivers[] = {
     {"' is not key=value", "' ist nicht Name=Wert"},
     {" is given twice", " steht zweimal da"},
     {"'%' without two hexadecimal digits", "'%' ohne zwei hexadezimale Ziffern"},
+    {"in the name of a folder or file write %3F for ? and %25 for %",
+     "im Namen eines Ordners oder einer Datei %3F für ? und %25 für % schreiben"},
     {"write %25 for the sign itself", "für das Zeichen selbst %25 schreiben"},
     {"a zero byte in the name of a device", "ein Nullbyte im Namen eines Geräts"},
     {"take it out", "es entfernen"},
