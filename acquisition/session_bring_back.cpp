@@ -3,6 +3,7 @@
 // What a session has lost of its records, from a copy of it.
 #include <algorithm>
 #include <charconv>
+#include <cstdlib>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <set>
@@ -226,7 +227,7 @@ Status BringingBack::take_events() {
     }
   }
   for (const std::string& key : salvage_some(table_named("events"), copy_, own_, [&](const std::string& key) {
-         return std::ranges::any_of(wanted, [&](std::int64_t one) { return std::to_string(one) == key; });
+         return std::ranges::binary_search(wanted, std::atoll(key.c_str()));
        })) {
     rows_.push_back(row_name("events", key));
   }
@@ -308,9 +309,9 @@ Status BringingBack::take_scans() {
 bool BringingBack::is_all() const {
   const bool listed = std::ranges::all_of(
       grid_ids(folder_), [&](int id) { return has_row(own_, row_name("scans", std::to_string(id))); });
+  const std::set<std::string> came(rows_.begin(), rows_.end());
   const bool each = std::ranges::all_of(lost_.rows, [&](const std::string& row) {
-    return std::ranges::find(rows_, row) != rows_.end() ||
-           (!row.starts_with("events ") && has_row(own_, row));
+    return came.contains(row) || (!row.starts_with("events ") && has_row(own_, row));
   });
   return is_late() && listed && each;
 }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
 #include <mutex>
 #include <optional>
 
@@ -27,14 +28,21 @@ struct SessionStore::Impl {
   mutable std::mutex mutex;        ///< of db and damaged_grids
 
   ~Impl();
-  /// kUsage when the session was opened for reading only.
+  /// kUsage when the session was opened for reading only; kStorage when it does not lie there any more.
   [[nodiscard]] Status writable() const;
   /// Under the mutex.
   [[nodiscard]] Result<int> next_id();
   /// The checks of opening that follow once db stands: rows, grids without a row, rows without their grid.
   [[nodiscard]] Status reconcile();
+  /// What the record says of scans that have no row.
+  struct Unlisted {
+    session::Losses standing;
+    std::map<int, session::DropState> drops;
+  };
+  [[nodiscard]] Result<Unlisted> unlisted();
   /// Takes a whole grid in that has no row.
-  [[nodiscard]] Status adopt(int id, const session::FileSum& sum, const RangeGrid& grid);
+  [[nodiscard]] Status adopt(int id, const session::FileSum& sum, const RangeGrid& grid,
+                             const Unlisted& record);
 };
 
 namespace session {

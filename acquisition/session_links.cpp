@@ -56,9 +56,19 @@ Status take_tables_apart(const fs::path& session) {
 Status check_written_names_are_no_links(const fs::path& session) {
   std::vector<const char*> written(std::begin(kFolders), std::end(kFolders));
   written.insert(written.end(), {kDatabase, kBackup, kSums});  // the lock looks for itself
+  const std::string log = std::string(kDatabase) + "-wal";
+  const std::string index = std::string(kDatabase) + "-shm";
+  written.insert(written.end(), {log.c_str(), index.c_str()});
   for (const char* name : written) {
     if (const auto link = link_on_the_way(session, name)) {
       return fail(link->kind, link->what, (session / link->where).string(), link->mend);
+    }
+  }
+  for (const std::string& name : {log, index}) {
+    std::error_code ignored;
+    const fs::file_status is = fs::status(session / name, ignored);
+    if (fs::exists(is) && !fs::is_regular_file(is)) {
+      return bad_input((session / name).string(), "no file: nothing is written to it", "take it away");
     }
   }
   return {};

@@ -111,6 +111,10 @@ Result<FolderLock> FolderLock::put_own(const fs::path& path) {
   return own;
 }
 
+bool FolderLock::is_of(const fs::path& folder) const {
+  return lies_at(fd_, folder / kLock);
+}
+
 /// Only for words: the lock itself holds without.
 void FolderLock::note_process() const {
   const std::string pid = std::to_string(::getpid()) + "\n";

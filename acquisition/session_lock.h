@@ -24,6 +24,9 @@ class FolderLock {
   FolderLock& operator=(const FolderLock&) = delete;
   ~FolderLock();
 
+  /// Whether it is still the lock of what lies there: the folder may have been moved, or the file taken away.
+  [[nodiscard]] bool is_of(const std::filesystem::path& folder) const;
+
  private:
   explicit FolderLock(int fd) : fd_(fd) {}
   /// In place of one that has other names too. While that is held.

@@ -3,7 +3,9 @@
 #include "acquisition/session_losses.h"
 
 #include <algorithm>
+#include <charconv>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "acquisition/session_query.h"
 #include "acquisition/session_tables.h"
@@ -40,9 +42,18 @@ bool says(const nlohmann::json& json, const char* key) {
   return json.is_object() && json.contains(key) && json[key].is_boolean() && json[key].get<bool>();
 }
 
+/// The number of a row, as it is written in the name of that row.
+std::optional<std::int64_t> number_of(std::string_view key) {
+  std::int64_t number = 0;
+  const auto [rest, problem] = std::from_chars(key.data(), key.data() + key.size(), number);
+  const bool is_it = problem == std::errc{} && std::to_string(number) == key;
+  return is_it ? std::optional(number) : std::nullopt;
+}
+
 bool is_taken_out(SqlDatabase& db, std::string_view id) {
-  Result<SqlStatement> query = db.prepare("SELECT 1 FROM scans WHERE dropped <> 0 AND CAST(id AS TEXT) = ?1");
-  return query && query->bind(1, id).step().value_or(false);
+  const std::optional<std::int64_t> number = number_of(id);
+  Result<SqlStatement> query = db.prepare("SELECT 1 FROM scans WHERE dropped <> 0 AND id = ?1");
+  return number && query && query->bind(1, *number).step().value_or(false);
 }
 
 /// Whether the row came again by itself, as it was made anew, or is one that nothing needs: a result of a
@@ -70,12 +81,20 @@ bool has_row(SqlDatabase& db, const std::string& row) {
     if (at == std::string::npos || row.substr(0, at) != table.name) {
       continue;
     }
-    const std::string sql = std::string("SELECT 1 FROM ") + table.name + " WHERE CAST(" + key_of(table) +
-                            " AS TEXT) = ?1 AND sum IS dubsar_sum(" + table.columns + ")";
+    // By its index: a session has tens of thousands of events, and each may be asked for.
+    const std::string column = key_of(table);
+    const std::string sql = std::string("SELECT 1 FROM ") + table.name + " WHERE " + column +
+                            " = ?1 AND sum IS dubsar_sum(" + table.columns + ")";
     Result<SqlStatement> query = db.prepare(sql.c_str());
-    return query && query->bind(1, std::string_view(row).substr(at + std::string_view(kBetween).size()))
-                        .step()
-                        .value_or(false);
+    if (!query) {
+      return false;
+    }
+    const std::string_view key = std::string_view(row).substr(at + std::string_view(kBetween).size());
+    if (column == "name" || column == "path") {
+      return query->bind(1, key).step().value_or(false);
+    }
+    const std::optional<std::int64_t> number = number_of(key);
+    return number && query->bind(1, *number).step().value_or(false);
   }
   return false;
 }

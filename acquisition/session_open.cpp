@@ -21,12 +21,15 @@ constexpr std::size_t kMostNamed = 8;
 /// Every commit reaches the disk before it returns; a log beside the file keeps readers and the writer apart.
 constexpr const char* kDurable = "PRAGMA journal_mode = WAL; PRAGMA synchronous = FULL;";
 
+constexpr const char* kMerge = "PRAGMA wal_checkpoint(TRUNCATE)";
+
 /// No database where there was one. An empty file with nothing beside it is what a program leaves that was
-/// stopped before its first change.
+/// stopped before its first change; a log is begun by the second one.
 bool is_gone(const fs::path& folder) {
   std::error_code unknown;
   return !has_content(folder / kDatabase) &&
-         (fs::exists(folder / kBackup, unknown) || !grid_ids(folder).empty());
+         (fs::exists(folder / kBackup, unknown) || !grid_ids(folder).empty() ||
+          has_content(beside(folder / kDatabase, kLogSuffix)));
 }
 
 Error gone_error(const std::string& where) {
@@ -124,6 +127,9 @@ Status snapshot(const fs::path& folder, SqlDatabase& memory) {
 
 Result<SqlDatabase> open_for_writing(const fs::path& folder, SessionOpening& opening, bool& rebuilt) {
   const fs::path path = folder / kDatabase;
+  if (Status back = bring_back_log(folder); !back) {
+    return std::unexpected(back.error());
+  }
   const bool missing = is_gone(folder);
   opening.created = !missing && !has_content(path);
   const Result<Sums> sums = read_sums(folder);
@@ -131,23 +137,18 @@ Result<SqlDatabase> open_for_writing(const fs::path& folder, SessionOpening& ope
   if (!commits_lost) {
     return std::unexpected(commits_lost.error());
   }
-  Result<SqlDatabase> db = SqlDatabase::open(path, SqlDatabase::Mode::kCreate);
-  std::optional<Error> fault;
-  if (missing) {
-    fault = gone_error(path.string());
-  } else if (!db) {
-    fault = db.error();
-  } else {
-    fault = fault_of(*db, path.string());
+  Result<SqlDatabase> db = missing ? std::unexpected(gone_error(path.string()))
+                                   : SqlDatabase::open(path, SqlDatabase::Mode::kCreate);
+  if (db) {
+    db->keep_log(true);  // it alone tells what is lost of it, until that is noted or all is replaced
   }
+  const std::optional<Error> fault = db ? fault_of(*db, path.string()) : db.error();
   if (fault && fault->kind == ErrorKind::kBadInput) {
     db = std::unexpected(*fault);  // closes it
     db = rebuild(folder, *fault, sums, *commits_lost, opening);
     rebuilt = db.has_value();
   } else if (fault) {
     return std::unexpected(*fault);
-  } else if (Status noted = *commits_lost ? note_losses(*db, {{}, true}) : Status(); !noted) {
-    return std::unexpected(noted.error());  // before anything else: what fails later closes it, with its log
   } else if (Status kept = keep_backup_aside(folder, sums, false, opening); !kept) {
     return std::unexpected(kept.error());
   }
@@ -160,6 +161,13 @@ Result<SqlDatabase> open_for_writing(const fs::path& folder, SessionOpening& ope
   if (Status durable = db->execute(kDurable); !durable) {
     return std::unexpected(durable.error());
   }
+  if (*commits_lost && !rebuilt) {
+    if (Status noted = note_losses(*db, {{}, true}); !noted) {
+      return std::unexpected(noted.error());
+    }
+    (void)db->execute(kMerge);  // what is left behind the damage would be told again after a kill
+  }
+  db->keep_log(false);
   if (Status synced = sync_folder(folder); !synced) {
     return std::unexpected(synced.error());
   }
@@ -173,6 +181,9 @@ Result<SqlDatabase> open_for_reading(const fs::path& folder, SessionOpening& ope
     return memory;
   }
   const std::string where = (folder / kDatabase).string();
+  if (const fs::path log = log_left_aside(folder); !log.empty()) {
+    opening.damage.push_back(log_aside_error(folder, log));
+  }
   const Result<bool> commits_lost = tell_lost_commits(folder, opening, false);
   if (!commits_lost) {
     return std::unexpected(commits_lost.error());
@@ -226,13 +237,18 @@ Status check_records(const fs::path& folder) {
 }
 
 void close_cleanly(const fs::path& folder, std::optional<SqlDatabase>& db) {
-  const bool merged = db && db->execute("PRAGMA wal_checkpoint(TRUNCATE)").has_value();
+  const bool merged = db && db->execute(kMerge).has_value();
   db.reset();
   if (!merged || has_content(beside(folder / kDatabase, "-wal"))) {
     return;  // The log stays and is played at the next opening.
   }
   const Result<std::string> bytes = read_whole_file(folder / kDatabase);
   if (!bytes) {
+    return;
+  }
+  // What was damaged meanwhile does not take the place of a backup that is whole: the next opening needs it.
+  Result<SqlDatabase> closed = SqlDatabase::open(folder / kDatabase, SqlDatabase::Mode::kImmutable);
+  if (!closed || fault_of(*closed, folder.string())) {
     return;
   }
   const FileSum sum{static_cast<std::int64_t>(bytes->size()), hash_of(*bytes)};

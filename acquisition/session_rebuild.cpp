@@ -7,6 +7,7 @@
 #include "acquisition/session_files.h"
 #include "acquisition/session_links.h"
 #include "acquisition/session_log.h"
+#include "acquisition/session_structure.h"
 #include "acquisition/session_tables.h"
 #include "formats/atomic_file.h"
 #include "formats/same_bytes.h"
@@ -27,6 +28,27 @@ bool has_content(const fs::path& path) {
 
 namespace {
 
+bool is_no_file(const fs::path& path) {
+  std::error_code ignored;
+  const fs::file_status is = fs::symlink_status(path, ignored);
+  return fs::exists(is) && !fs::is_regular_file(is);
+}
+
+/// Names under which database and log lie aside, one of the two at least.
+std::vector<fs::path> kept_aside(const fs::path& database) {
+  const auto is_there = [](const fs::path& path) {
+    std::error_code ignored;
+    return fs::exists(fs::symlink_status(path, ignored));
+  };
+  std::vector<fs::path> out;
+  for (fs::path one;; out.push_back(one)) {
+    one = beside(database, kAsideMark + std::to_string(out.size() + 1));
+    if (!is_there(one) && !is_there(beside(one, kLogSuffix))) {
+      return out;
+    }
+  }
+}
+
 struct Backup {
   bool there = false;
   bool fits = true;    ///< is what the list of checksums says, where that has it
@@ -35,6 +57,9 @@ struct Backup {
 
 Backup look_at_backup(const fs::path& folder, const Sums& sums, bool read_rows) {
   Backup out;
+  if (is_no_file(folder / kBackup)) {
+    return {true, false, false};
+  }
   out.there = has_content(folder / kBackup);
   if (!out.there) {
     return out;
@@ -56,18 +81,30 @@ Backup look_at_backup(const fs::path& folder, const Sums& sums, bool read_rows) 
 /// Nothing was written since the backup: closing gives it and the database the same bytes, and the next
 /// opening takes the database's checksum away.
 bool is_of_last_close(const Sums& sums) {
-  return sums.count(kDatabase) == 1 && sums.count(kBackup) == 1 &&
-         sums.find(kDatabase)->second == sums.find(kBackup)->second;
+  const auto [from, to] = sums.equal_range(kDatabase);
+  return sums.count(kBackup) == 1 &&
+         std::any_of(from, to, [&](const auto& one) { return one.second == sums.find(kBackup)->second; });
+}
+
+/// Poses and flags are of one time: older ones do not stand in for what was not there any more.
+bool lacks_results(const Losses& lost) {
+  return lost.more || std::ranges::any_of(lost.rows, [](const std::string& row) {
+           return row.starts_with("poses ") || row.starts_with("flags ");
+         });
+}
+
+bool may_take_results(const Salvaged& so_far, SqlDatabase& from, SqlDatabase& to) {
+  const bool has_some =
+      to.integer_of("SELECT (SELECT count(*) FROM poses) + (SELECT count(*) FROM flags)").value_or(0) > 0;
+  return so_far.rows == 0 || (lacks_results(so_far.lost) && has_some && results_fit(from, to));
 }
 
 std::string aside_note(const std::string& name) {
-  const bool log = name.ends_with(kLogSuffix);
-  const bool list = name.starts_with(kSums);
-  const char* what = log                         ? "log"
-                     : list                      ? "list of checksums"
-                     : name.starts_with(kBackup) ? "backup"
-                                                 : "database";
-  return std::string("kept the damaged ") + what + " as " + name;
+  const char* what = name.ends_with(kLogSuffix)  ? "kept the damaged log as "
+                     : name.starts_with(kSums)   ? "kept the damaged list of checksums as "
+                     : name.starts_with(kBackup) ? "kept the damaged backup as "
+                                                 : "kept the damaged database as ";
+  return what + name;
 }
 
 /// Takes what can be read of the damaged database, with its log first; without it, should the log be what is
@@ -75,17 +112,19 @@ std::string aside_note(const std::string& name) {
 Salvaged take_database(const fs::path& folder, SqlDatabase& to) {
   Salvaged out;
   out.lost.more = true;
+  if (!has_content(folder / kDatabase)) {
+    return out;  // SQLite takes the log of an empty database away, as soon as somebody reads
+  }
   for (const auto mode : {SqlDatabase::Mode::kReadOnly, SqlDatabase::Mode::kImmutable}) {
     Result<SqlDatabase> from = SqlDatabase::open(folder / kDatabase, mode);
     if (!from) {
       continue;
     }
-    out.rows = salvage_rows(*from, to, true);
+    out.rows = std::max(out.rows, salvage_rows(*from, to, may_take_results(out, *from, to)));
     if (mode == SqlDatabase::Mode::kReadOnly) {
       const DamagedRows damaged = damaged_rows_to_be_read(*from);
       out.lost.rows.insert(damaged.rows.begin(), damaged.rows.end());
-      out.lost.more =
-          !has_content(folder / kDatabase) || !damaged.all_read || !from->structure_fault().empty();
+      out.lost.more = !damaged.all_read || (!from->structure_fault().empty() && fault_may_cost_rows(*from));
     }
   }
   return out;
@@ -105,9 +144,7 @@ Result<Salvaged> fill_from_remains(const fs::path& folder, const Sums& sums, Sql
   const Backup backup = look_at_backup(folder, sums, true);
   const bool has_all = backup.whole && backup.fits && is_of_last_close(sums);
   if (Result<SqlDatabase> from = SqlDatabase::open(folder / kBackup, SqlDatabase::Mode::kImmutable); from) {
-    const bool has_results =
-        to.integer_of("SELECT (SELECT count(*) FROM poses) + (SELECT count(*) FROM flags)").value_or(0) > 0;
-    const bool results_too = out.rows == 0 || has_all || (has_results && results_fit(*from, to));
+    const bool results_too = has_all || may_take_results(out, *from, to);
     out.rows = std::max(out.rows, salvage_rows(*from, to, results_too));
     if (out.lost.more) {  // it alone may name what is lost
       const DamagedRows damaged = damaged_rows_to_be_read(*from);
@@ -142,22 +179,31 @@ Result<std::vector<std::string>> keep_aside(const fs::path& folder) {
     return have_same_bytes(one, database) &&
            (has_log ? have_same_bytes(log, beside(database, kLogSuffix)) : !has_content(log));
   };
-  std::error_code ignored;
-  fs::path kept;
-  for (int i = 1; kept.empty() && fs::exists(beside(database, kAsideMark + std::to_string(i)), ignored);
-       ++i) {
-    const fs::path one = beside(database, kAsideMark + std::to_string(i));
-    kept = !fs::is_symlink(one, ignored) && is_kept_as(one) ? one : fs::path();
-  }
-  const std::string name = (kept.empty() ? name_aside(database) : kept).filename().string();
+  const std::vector<fs::path> before = kept_aside(database);
+  const auto same =
+      std::ranges::find_if(before, [&](const fs::path& one) { return !is_no_file(one) && is_kept_as(one); });
+  const bool is_kept = same != before.end();
+  const std::string name =
+      (is_kept ? *same : beside(database, kAsideMark + std::to_string(before.size() + 1)))
+          .filename()
+          .string();
   std::vector<std::string> out;
+  if (is_no_file(database)) {
+    std::error_code error;
+    fs::rename(database, folder / name, error);
+    if (error) {
+      return fail(ErrorKind::kStorage, "cannot set what is damaged aside: " + error.message(),
+                  database.string(), "see that the folder may be written to");
+    }
+    out.push_back(name);
+  }
   for (const std::string suffix : {"", kLogSuffix}) {
     const fs::path from = beside(database, suffix);
     if (!has_content(from)) {
       continue;
     }
     out.push_back(name + suffix);
-    if (!kept.empty()) {
+    if (is_kept) {
       continue;
     }
     const Result<std::string> bytes = read_whole_file(from);
@@ -197,29 +243,53 @@ Status keep_backup_aside(const fs::path& folder, const Result<Sums>& sums, bool 
   return {};
 }
 
-namespace {
-
-/// A rebuilding that was broken off after it had taken the log away, and before it replaced the database, has
-/// left a copy of both aside: the log is put back beside the database that it belongs to.
-Status bring_back_log(const fs::path& folder) {
+fs::path log_left_aside(const fs::path& folder) {
   const fs::path path = folder / kDatabase;
-  std::error_code ignored;
+  if (!has_content(path) || has_content(beside(path, kLogSuffix))) {
+    return {};
+  }
   fs::path aside;  // the newest with a log: repairing leaves copies of the database alone
-  for (int i = 1; fs::exists(beside(path, kAsideMark + std::to_string(i)), ignored); ++i) {
-    const fs::path one = beside(path, kAsideMark + std::to_string(i));
+  for (const fs::path& one : kept_aside(path)) {
     aside = has_content(beside(one, kLogSuffix)) ? one : aside;
   }
   const fs::path log = beside(aside, kLogSuffix);
-  if (aside.empty() || has_content(beside(path, kLogSuffix)) || link_on_the_way(folder, aside.filename()) ||
-      link_on_the_way(folder, log.filename()) || !have_same_bytes(aside, path)) {
+  if (aside.empty() || link_on_the_way(folder, aside.filename()) || link_on_the_way(folder, log.filename()) ||
+      !have_same_bytes(aside, path)) {
     return {};
   }
-  if (const Result<LogState> state = read_log(log); !state || state->commits == 0) {
+  const Result<LogState> state = read_log(log);
+  return state && state->commits + state->lost_commits > 0 ? log : fs::path();
+}
+
+Error log_aside_error(const fs::path& folder, const fs::path& log) {
+  return {ErrorKind::kBadInput, "its log lies aside: a rebuilding was broken off", log.filename().string(),
+          "dubsar verify --repair " + word_of(folder) + " goes on with it"};
+}
+
+Status bring_back_log(const fs::path& folder) {
+  const fs::path log = log_left_aside(folder);
+  if (log.empty()) {
     return {};
   }
   const Result<std::string> bytes = read_whole_file(log);
-  return bytes ? write_file_atomically(beside(path, kLogSuffix), std::string_view(*bytes))
+  return bytes ? write_file_atomically(beside(folder / kDatabase, kLogSuffix), std::string_view(*bytes))
                : std::unexpected(bytes.error());
+}
+
+namespace {
+
+/// The list of checksums while a new database takes the place of the old one: either is whole, and a backup
+/// that has everything is known for it by a next rebuilding, should this one be broken off.
+Status expect_either(const fs::path& folder, const Sums& sums, const fs::path& fresh) {
+  if (!is_of_last_close(sums)) {
+    return take_sum_away(folder, sums);
+  }
+  const Result<FileSum> sum = sum_of_file(fresh);
+  if (!sum) {
+    return std::unexpected(sum.error());
+  }
+  const FileSum& old = sums.find(kBackup)->second;
+  return write_sums(folder, {{kDatabase, old}, {kDatabase, *sum}, {kBackup, old}});
 }
 
 /// The log must be gone before a new database takes the place of the old one: SQLite would play it over the
@@ -264,9 +334,6 @@ class FreshDatabase {
 
 Result<SqlDatabase> rebuild(const fs::path& folder, const Error& fault, const Result<Sums>& sums,
                             bool commits_lost, SessionOpening& opening) {
-  if (Status back = bring_back_log(folder); !back) {
-    return std::unexpected(back.error());
-  }
   const FreshDatabase fresh(folder);
   Salvaged salvaged;
   {
@@ -292,8 +359,8 @@ Result<SqlDatabase> rebuild(const fs::path& folder, const Error& fault, const Re
   if (Status kept = keep_backup_aside(folder, sums, true, opening); !kept) {
     return std::unexpected(kept.error());
   }
-  if (Status taken = take_sum_away(folder, sums.value_or(Sums())); !taken) {
-    return std::unexpected(taken.error());
+  if (Status expected = expect_either(folder, sums.value_or(Sums()), fresh.path()); !expected) {
+    return std::unexpected(expected.error());
   }
   if (Status taken = take_log_away(folder); !taken) {
     return std::unexpected(taken.error());

@@ -77,16 +77,22 @@ Status check_arrays(const RangeGrid& grid) {
 }  // namespace
 
 SessionStore::Impl::~Impl() {
-  if (access == Access::kReadWrite && db) {
+  if (access == Access::kReadWrite && db && lock->is_of(folder)) {
     session::close_cleanly(folder, db);
   }
 }
 
 Status SessionStore::Impl::writable() const {
-  if (access == Access::kReadWrite) {
-    return {};
+  if (access != Access::kReadWrite) {
+    return fail(ErrorKind::kUsage, "the session was opened for reading only", folder.string());
   }
-  return fail(ErrorKind::kUsage, "the session was opened for reading only", folder.string());
+  if (!lock->is_of(folder)) {
+    // Its tables are those that were opened, wherever they lie now; files would go to what lies here.
+    return fail(ErrorKind::kStorage,
+                "nothing is stored: since it was opened the session was moved, or its lock taken away",
+                folder.string(), "open the session again where it lies now");
+  }
+  return {};
 }
 
 Result<int> SessionStore::Impl::next_id() {
@@ -148,7 +154,7 @@ Result<SessionStore> SessionStore::open_for_writing(const fs::path& folder, OnDa
     return std::unexpected(apart.error());
   }
   if (const int removed = session::remove_temporaries(folder); removed > 0) {
-    impl->opening.notes.push_back("removed " + std::to_string(removed) + " half-written files");
+    impl->opening.notes.push_back("half-written files removed: " + std::to_string(removed));
   }
   Result<SqlDatabase> db = session::open_for_writing(folder, impl->opening, impl->rebuilt);
   if (!db) {
@@ -322,19 +328,24 @@ namespace {
 
 Status mark_scan(SqlDatabase& db, int id, bool dropped, std::string_view why, const fs::path& folder) {
   return in_transaction(db, [&]() -> Status {
-    const Result<std::int64_t> there =
-        db.integer_of(("SELECT count(*) FROM scans WHERE id = " + std::to_string(id)).c_str());
-    if (!there) {
-      return std::unexpected(there.error());
-    }
-    if (*there == 0) {
-      return fail(ErrorKind::kUsage, "no scan " + std::to_string(id), folder.string());
+    bool stood = false;
+    {  // a row that was damaged since the session was opened must not get a checksum that fits
+      auto row =
+          checked_row(db,
+                      "SELECT sum IS dubsar_sum(id,file,bytes,hash,rows,cols,samples,spacing_mm,timestamp_ns,"
+                      "device,source,dropped,note), dropped FROM scans WHERE id = ?1",
+                      id, session::grid_name(id));
+      if (!row) {
+        return std::unexpected(row.error());
+      }
+      if (!*row) {
+        return fail(ErrorKind::kUsage, "no scan " + std::to_string(id), folder.string());
+      }
+      stood = (*row)->integer(1) != 0;
     }
     // What is so already stays as it is: the reason that it was dropped for, above all.
-    const Result<std::int64_t> stood =
-        db.integer_of(("SELECT dropped FROM scans WHERE id = " + std::to_string(id)).c_str());
-    if (!stood || (*stood != 0) == dropped) {
-      return stood ? Status() : std::unexpected(stood.error());
+    if (stood == dropped) {
+      return {};
     }
     if (Status marked = session::put_dropped(db, id, dropped, why); !marked) {
       return marked;

@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright The Dubsar developers
 #include <algorithm>
+#include <iterator>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "acquisition/session_impl.h"
 #include "acquisition/session_links.h"
 #include "acquisition/session_log.h"
 #include "acquisition/session_query.h"
+#include "acquisition/session_rebuild.h"
 #include "formats/atomic_file.h"
 #include "formats/files_below.h"
 #include "formats/grid_file.h"
@@ -109,6 +112,8 @@ void place_the_rest(const fs::path& folder, const std::vector<Recorded>& checked
   const std::string log = std::string(session::kDatabase) + "-wal";
   const std::string own[] = {session::kDatabase, session::kSums, session::kLock, log,
                              std::string(session::kDatabase) + "-shm"};
+  std::set<std::string> known(std::begin(own), std::end(own));
+  std::ranges::transform(checked, std::inserter(known, known.end()), &Recorded::name);
   const FoundBelow found = everything_below(folder);
   for (const Error& error : found.unreadable) {
     const std::string name = fs::path(error.where).lexically_relative(folder).generic_string();
@@ -120,8 +125,7 @@ void place_the_rest(const fs::path& folder, const std::vector<Recorded>& checked
   }
   for (const fs::path& file : found.files) {
     const std::string name = file.lexically_relative(folder).generic_string();
-    if (std::ranges::find(checked, name, &Recorded::name) != checked.end() ||
-        std::ranges::find(own, name) != std::end(own)) {
+    if (known.contains(name)) {
       continue;
     }
     std::error_code ignored;
@@ -162,6 +166,9 @@ void check_records(SqlDatabase& db, const fs::path& folder, VerifyReport& report
       report.damaged.push_back({ErrorKind::kBadInput, row + " is damaged", session::kDatabase, mend});
     }
   }
+  if (const fs::path aside = session::log_left_aside(folder); !aside.empty()) {
+    report.damaged.push_back(session::log_aside_error(folder, aside));
+  }
   const std::string log = std::string(session::kDatabase) + "-wal";
   const Result<session::LogState> state = session::read_log(folder / log);
   if (!state) {
@@ -173,21 +180,26 @@ void check_records(SqlDatabase& db, const fs::path& folder, VerifyReport& report
 
 }  // namespace
 
-Status SessionStore::Impl::adopt(int id, const FileSum& sum, const RangeGrid& grid) {
+Result<SessionStore::Impl::Unlisted> SessionStore::Impl::unlisted() {
   // Of a scan whose row was lost the record still tells whether it was taken out, as far as it goes. Where
   // nothing was rebuilt it is one that a kill left unlisted.
   Result<session::Losses> standing = rebuilt ? session::standing_losses(*db) : session::Losses();
-  const Result<std::map<int, session::DropState>> drops = session::dropped_by_record(*db);
+  Result<std::map<int, session::DropState>> drops = session::dropped_by_record(*db);
   if (!standing || !drops) {
     return std::unexpected(standing ? drops.error() : standing.error());
   }
   standing->rows.merge(session::Losses(lost).rows);
-  const bool was_listed = standing->rows.contains(session::row_name("scans", std::to_string(id)));
-  const bool unknown =
-      standing->more || lost.more ||
-      std::ranges::any_of(standing->rows, [](const std::string& row) { return row.starts_with("events "); });
-  const auto known = drops->find(id);
-  const bool dropped = known != drops->end() && known->second.dropped;
+  standing->more = standing->more || lost.more;
+  return Unlisted{std::move(*standing), std::move(*drops)};
+}
+
+Status SessionStore::Impl::adopt(int id, const FileSum& sum, const RangeGrid& grid, const Unlisted& record) {
+  const std::set<std::string>& lost_rows = record.standing.rows;
+  const bool was_listed = lost_rows.contains(session::row_name("scans", std::to_string(id)));
+  const auto event = lost_rows.lower_bound("events ");
+  const bool unknown = record.standing.more || (event != lost_rows.end() && event->starts_with("events "));
+  const auto known = record.drops.find(id);
+  const bool dropped = known != record.drops.end() && known->second.dropped;
   nlohmann::ordered_json detail{{"id", id}};
   if (unknown) {
     detail["remark"] = "records of it are lost: it may have been taken out";
@@ -223,6 +235,7 @@ Status SessionStore::Impl::reconcile() {
       opening.damage.push_back(std::move(*fault));
     }
   }
+  std::optional<Unlisted> record;
   // A program that was killed between storing a grid and listing it leaves a whole grid without a row.
   for (const int id : session::grid_ids(folder)) {
     if (std::ranges::find(*listed, id, &Recorded::id) != listed->end()) {
@@ -237,7 +250,14 @@ Status SessionStore::Impl::reconcile() {
       continue;
     }
     const FileSum sum{static_cast<std::int64_t>(bytes->size()), session::hash_of(*bytes)};
-    if (Status adopted = adopt(id, sum, *grid); !adopted) {
+    if (!record) {  // once: nothing of this is changed by taking grids in
+      Result<Unlisted> read = unlisted();
+      if (!read) {
+        return std::unexpected(read.error());
+      }
+      record = std::move(*read);
+    }
+    if (Status adopted = adopt(id, sum, *grid, *record); !adopted) {
       return adopted;
     }
   }

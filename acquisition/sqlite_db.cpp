@@ -240,16 +240,36 @@ Status SqlDatabase::copy_from(SqlDatabase& source) {
 }
 
 std::string SqlDatabase::structure_fault() {
-  Result<SqlStatement> check = prepare("PRAGMA integrity_check(1)");
+  const Result<std::vector<std::string>> faults = structure_faults(1);
+  return !faults ? faults.error().what : faults->empty() ? std::string() : faults->front();
+}
+
+Result<std::vector<std::string>> SqlDatabase::structure_faults(int most, const char* table) {
+  const std::string of = table != nullptr ? std::string(table) : std::to_string(most);
+  Result<SqlStatement> check = prepare(("PRAGMA integrity_check(" + of + ")").c_str());
   if (!check) {
-    return check.error().what;
+    return std::unexpected(check.error());
   }
-  const Result<bool> row = check->step();
+  std::vector<std::string> out;
+  Result<bool> row = check->step();
+  if (row && !*row) {
+    return std::vector<std::string>{"no answer"};
+  }
+  for (; row && *row && out.size() < static_cast<std::size_t>(most); row = check->step()) {
+    out.push_back(check->text(0));
+  }
   if (!row) {
-    return row.error().what;
+    return std::unexpected(row.error());
   }
-  const std::string answer = *row ? check->text(0) : std::string("no answer");
-  return answer == "ok" ? std::string() : answer;
+  return out.front() == "ok" ? std::vector<std::string>() : out;
+}
+
+void SqlDatabase::allow_changes_of_schema() {
+  sqlite3_db_config(db_.get(), SQLITE_DBCONFIG_DEFENSIVE, 0, nullptr);
+}
+
+void SqlDatabase::keep_log(bool keep) {
+  sqlite3_db_config(db_.get(), SQLITE_DBCONFIG_NO_CKPT_ON_CLOSE, keep ? 1 : 0, nullptr);
 }
 
 Result<std::int64_t> SqlDatabase::integer_of(const char* sql) {

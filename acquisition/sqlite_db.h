@@ -9,6 +9,7 @@
 #include <string>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 #include "core/result.h"
 
@@ -68,6 +69,13 @@ class SqlDatabase {
   Status copy_from(SqlDatabase& source);
   /// Empty when SQLite finds its structure whole, else the first fault.
   [[nodiscard]] std::string structure_fault();
+  /// The first faults that SQLite finds in its structure or, with a name, in that of a table and its indexes.
+  [[nodiscard]] Result<std::vector<std::string>> structure_faults(int most, const char* table = nullptr);
+  /// Whether a log stays as it is when this is closed. Otherwise the last one to close merges it into the
+  /// file and removes it.
+  void keep_log(bool keep);
+  /// Of a copy in memory, whose tables are to be described otherwise.
+  void allow_changes_of_schema();
   /// The first value of the first row; 0 without one.
   [[nodiscard]] Result<std::int64_t> integer_of(const char* sql);
 

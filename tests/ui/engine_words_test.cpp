@@ -227,6 +227,22 @@ TEST(EngineWords, WhoSetsAScanAsideSaysItInOneLanguage) {
             "Scans 1, 2 und 5 passen zueinander und nicht zu Scan 0");
 }
 
+TEST(EngineWords, WhatOpeningASessionPutRightIsGerman) {
+  const auto german = [](const char* said) { return translated(said, Language::kGerman); };
+  EXPECT_EQ(german("took in grids/007.grid, which was stored and not yet listed"),
+            "aufgenommen: grids/007.grid, gespeichert und noch nicht verzeichnet");
+  EXPECT_EQ(
+      german("took in grids/007.grid, whose row was lost: taken out, as its record says"),
+      "aufgenommen: grids/007.grid, dessen Zeile verloren war: herausgenommen, wie es aufgezeichnet ist");
+  EXPECT_EQ(german("took in grids/007.grid, whose row was lost; it may have been taken out"),
+            "aufgenommen: grids/007.grid, dessen Zeile verloren war; vielleicht war er herausgenommen");
+  EXPECT_EQ(german("half-written files removed: 2"), "halb geschriebene Dateien entfernt: 2");
+  EXPECT_EQ(german("kept the damaged log as session.sqlite.damaged-1-wal"),
+            "das beschädigte Protokoll ist aufgehoben als session.sqlite.damaged-1-wal");
+  EXPECT_EQ(german("kept the damaged database as session.sqlite.damaged-1"),
+            "die beschädigte Datenbank ist aufgehoben als session.sqlite.damaged-1");
+}
+
 TEST(EngineWords, NobodyInTheWindowIsToldToGiveACommand) {
   for (const char* file :
        {"station/earlier_package.cpp", "archive/staged_folder.cpp", "station/engine_misses.cpp",

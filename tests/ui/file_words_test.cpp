@@ -79,13 +79,13 @@ TEST(FileWords, NoRefusalOfAReaderIsHalfGerman) {
 TEST(FileWords, NothingSaidOfASessionIsHalfGerman) {
   const int sentences = test::expect_german(
       {"acquisition/session_files.cpp", "acquisition/session_lock.cpp", "acquisition/session_log.cpp",
-       "acquisition/session_open.cpp", "acquisition/session_records.cpp", "acquisition/session_repair.cpp",
-       "acquisition/session_store.cpp", "acquisition/session_tables.cpp", "acquisition/session_verify.cpp",
-       "acquisition/sqlite_db.cpp", "acquisition/sign_off_log.cpp", "acquisition/operator_log.cpp",
-       "acquisition/pose_json.cpp"},
+       "acquisition/session_open.cpp", "acquisition/session_rebuild.cpp", "acquisition/session_records.cpp",
+       "acquisition/session_repair.cpp", "acquisition/session_links.cpp", "acquisition/session_store.cpp",
+       "acquisition/session_tables.cpp", "acquisition/session_verify.cpp", "acquisition/sqlite_db.cpp",
+       "acquisition/sign_off_log.cpp", "acquisition/operator_log.cpp", "acquisition/pose_json.cpp"},
       and_these({"scan stored", "dubsar verify --repair ", "dubsar sign-off 1\\n", "dubsar sign-off 2\\n",
                  "pose hint", "pose hint withdrawn", "scan locked", "scan unlocked", "signed ",
-                 "scan dropped", "scan restored", "PRAGMA integrity_check(1)",
+                 "scan dropped", "scan restored", "PRAGMA wal_checkpoint(TRUNCATE)",
                  "SELECT id, file, bytes, hash FROM scans ORDER BY id",
                  "SELECT -1, path, bytes, hash FROM files ORDER BY path"}));
   EXPECT_GT(sentences, 70);
