@@ -185,6 +185,14 @@ std::string JsonNode::text() const {
   return value_->get<std::string>();
 }
 
+bool JsonNode::is_text() const {
+  return value_ != nullptr && value_->is_string();
+}
+
+bool JsonNode::is_whole_number(std::int64_t low, std::int64_t high) const {
+  return value_ != nullptr && value_->is_number_integer() && *value_ >= low && *value_ <= high;
+}
+
 bool JsonNode::boolean() const {
   if (value_ == nullptr) {
     return false;

@@ -51,6 +51,9 @@ class JsonNode {
   /// Any number of 64 bits without a sign: seeds.
   [[nodiscard]] std::uint64_t unsigned_integer() const;
   [[nodiscard]] std::string text() const;
+  /// For what another program may have said in a way of its own: nothing is noted.
+  [[nodiscard]] bool is_text() const;
+  [[nodiscard]] bool is_whole_number(std::int64_t low, std::int64_t high) const;
   [[nodiscard]] bool boolean() const;
   /// The position in `words` of the text that stands here.
   [[nodiscard]] std::size_t one_of(const std::vector<std::string>& words) const;

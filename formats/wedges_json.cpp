@@ -68,6 +68,12 @@ std::optional<WedgeProfile> profile_from(const JsonNode& node) {
 std::string wedges_to_json(const WedgeFile& file) {
   OrderedJson root;
   root["unit"] = "mm";
+  if (!file.program.empty()) {
+    root["program"] = file.program;
+  }
+  if (file.method > 0) {
+    root["method"] = file.method;
+  }
   for (const auto& [name, value] : file.label.words) {
     root["tablet"][label_value(name)] = label_value(value);
   }
@@ -123,6 +129,13 @@ Result<WedgeFile> parse_wedges(std::string_view text, const std::string& where) 
   const JsonNode root = document->root();
   const double mm = mm_per_unit_of(root);
   WedgeFile file;
+  if (const auto program = root.find("program"); program && program->is_text()) {
+    file.program = program->text();
+  }
+  constexpr std::int64_t kMostMethods = std::numeric_limits<int>::max();
+  if (const auto method = root.find("method"); method && method->is_whole_number(1, kMostMethods)) {
+    file.method = static_cast<int>(method->integer(1, kMostMethods));
+  }
   if (const auto tablet = root.find("tablet")) {
     file.label = label_in_object(*tablet);
   }

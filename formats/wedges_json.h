@@ -20,8 +20,10 @@ namespace dubsar {
 
 /// What an analysis says of one mesh: wedges.json (contract "Wedges" in design.md; docs/formats/wedges.md).
 struct WedgeFile {
-  FileLabel label;   ///< what they are of; the file may travel alone
-  std::string mesh;  ///< file name of the mesh
+  std::string program;  ///< that measured them, with its version; empty where nobody says so
+  int method = 0;       ///< kWedgeMethod (analysis/wedges.h) that they were measured by; 0: not known
+  FileLabel label;      ///< what they are of; the file may travel alone
+  std::string mesh;     ///< file name of the mesh
   ExitDefinition exits = ExitDefinition::kSurface;
   /// What the mesh's numbers were taken for, by their size alone: one of kLengthUnits. Mostly empty.
   std::string unit_assumed;

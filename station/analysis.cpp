@@ -11,6 +11,7 @@
 #include "analysis/wedge_features.h"
 #include "core/log.h"
 #include "core/parallel.h"
+#include "station/results.h"
 
 namespace dubsar {
 
@@ -77,6 +78,8 @@ void warn_of_lost(const Analysis& analysis, const std::string& where) {
 
 WedgeFile wedge_file(std::string mesh_name, const AnalysisOptions& options, const Analysis& analysis) {
   WedgeFile file;
+  file.program = program_name();
+  file.method = kWedgeMethod;
   file.mesh = std::move(mesh_name);
   file.exits = options.wedges.exits;
   file.wedges = analysis.set.wedges;

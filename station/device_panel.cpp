@@ -45,6 +45,20 @@ Result<ByDevice> load(const SessionStore& store) {
   return out;
 }
 
+Status save(SessionStore& store, const ByDevice& all) {
+  OrderedJson devices = OrderedJson::array();
+  for (const auto& [device, settings] : all) {
+    OrderedJson list = OrderedJson::array();
+    for (const auto& [key, word] : settings) {
+      list.push_back({{"key", key}, {"value", word}});
+    }
+    devices.push_back({{"uri", device}, {"settings", std::move(list)}});
+  }
+  OrderedJson root;
+  root["devices"] = std::move(devices);
+  return store.save_document(kDocument, text_of(root));
+}
+
 }  // namespace
 
 Result<DevicePanel> panel_of(Device& device) {
@@ -106,17 +120,26 @@ Status keep_settings(SessionStore& store, const std::string& uri, const SettingW
   const std::string own = absolute_device(uri);
   std::erase_if(*all, [&](const auto& known) { return absolute_device(known.first) == own; });
   all->emplace_back(own, words);  // the last one is the session's own
-  OrderedJson devices = OrderedJson::array();
-  for (const auto& [device, settings] : *all) {
-    OrderedJson list = OrderedJson::array();
-    for (const auto& [key, word] : settings) {
-      list.push_back({{"key", key}, {"value", word}});
-    }
-    devices.push_back({{"uri", device}, {"settings", std::move(list)}});
+  return save(store, *all);
+}
+
+Status note_settings(SessionStore& store, const std::string& uri, const SettingWords& words) {
+  const auto scans = store.scans();
+  Result<ByDevice> all = load(store);
+  if (!scans || !all) {
+    return std::unexpected(scans ? all.error() : scans.error());
   }
-  OrderedJson root;
-  root["devices"] = std::move(devices);
-  return store.save_document(kDocument, text_of(root));
+  if (scans->empty()) {
+    return keep_settings(store, uri, words);
+  }
+  const std::string own = absolute_device(uri);
+  const auto known = std::ranges::find(*all, own, [](const auto& one) { return absolute_device(one.first); });
+  if (known != all->end()) {
+    *known = {own, words};
+  } else {
+    all->emplace(all->begin(), own, words);
+  }
+  return save(store, *all);
 }
 
 Result<std::string> own_device(const SessionStore& store) {

@@ -44,6 +44,9 @@ void put_word(SettingWords& words, const std::string& key, const std::string& wo
 [[nodiscard]] Result<SettingWords> kept_settings(const SessionStore& store, const std::string& uri);
 /// And that this device is the one that the session goes on with.
 Status keep_settings(SessionStore& store, const std::string& uri, const SettingWords& words);
+/// Of a device that may not have scanned the tablet: a session that has scans goes on with the device that it
+/// went on with.
+Status note_settings(SessionStore& store, const std::string& uri, const SettingWords& words);
 
 /// URI of the device that the session was opened with last; empty where none is kept. Errors: as above.
 [[nodiscard]] Result<std::string> own_device(const SessionStore& store);

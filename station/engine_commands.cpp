@@ -135,7 +135,7 @@ Result<std::vector<StationScan>> Engine::Impl::label_pins(const LabelPins& comma
   if (const Status kept = keep_pin_labels(*store, command.id, command.tips, command.tip_diameter_mm); !kept) {
     return std::unexpected(kept.error());
   }
-  Result<std::optional<PinSet>> now = session_pins(*store);
+  Result<std::optional<PinSet>> now = session_pins(*store, options.pins);
   if (!now) {
     return std::unexpected(now.error());
   }

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright The Dubsar developers
 // What the operator sets of the open device, and sees through its camera, between two scans.
-#include "acquisition/device_uri.h"
 #include "acquisition/setting_words.h"
 #include "station/engine_impl.h"
 
@@ -38,11 +37,8 @@ Status Engine::Impl::open_settings() {
       put_word(settings, key, value);
     }
   }
-  const Result<std::string> own = own_device(*store);  // where that cannot be read, it was said above
-  if (!options.settings.empty() || (own && *own != absolute_device(options.device))) {
-    if (const Status saved = keep_settings(*store, options.device, settings); !saved) {
-      return saved;
-    }
+  if (const Status own = keep_first_device(); !own) {
+    return own;
   }
   tell_panel();
   return {};
@@ -62,8 +58,7 @@ void Engine::Impl::change_settings() {
     Status put = stream ? stream->put({{one.key, one.word}}, options.device)
                         : put_settings(source->device(), {{one.key, one.word}}, options.device);
     if (put) {
-      put_word(settings, one.key, one.word);
-      put = keep_settings(*store, options.device, settings);
+      put = keep_setting(one);
     }
     if (!put) {
       emit(Notice{put.error().line()});

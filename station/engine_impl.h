@@ -34,6 +34,7 @@
 #include "planning/sparse_flags.h"
 #include "registration/registrar.h"
 #include "station/bounded_queue.h"
+#include "station/calibration_record.h"
 #include "station/camera_watch.h"
 #include "station/drives.h"
 #include "station/intruders.h"
@@ -117,8 +118,8 @@ class StageClock {
 /// run, or is under the mutex. engine_open.cpp opens device and session, engine_stages.cpp has the four
 /// threads, engine_motion.cpp what moves, engine_misses.cpp what is done about scans that are not taken up,
 /// engine_pace.cpp what waits for the operator, engine_device.cpp what is set and seen of the device,
-/// engine_commands.cpp what the operator asks for meanwhile, engine_results.cpp what is made at the end,
-/// engine.cpp the order of it all.
+/// engine_origin.cpp what the session keeps of what it was scanned with, engine_commands.cpp what the
+/// operator asks for meanwhile, engine_results.cpp what is made at the end, engine.cpp the order of it all.
 struct Engine::Impl {
   EngineOptions options;
   EventSink sink;
@@ -158,7 +159,6 @@ struct Engine::Impl {
   std::optional<Placement> present;  ///< where the device was last driven to; an arm is anywhere at first
   StageScene scene;                  ///< as the last step saw it
   int empty_scans = 0;               ///< in a row
-  SettingWords settings;             ///< of the device, that were changed
   std::unique_ptr<CameraStream> stream;
   bool asked_once = false;  ///< the first scan of a paced run is asked for by running it
   bool at_start = false;    ///< a paced run stands where its first scan is taken from
@@ -188,6 +188,14 @@ struct Engine::Impl {
   bool last_scan_taken_up = true;        ///< as registration has judged it
   std::optional<NextStep> changed_step;  ///< what the operator's commands made of the step that waits
   std::condition_variable pace;
+
+  // What the tablet was scanned with stays as it is until a scan of this run is stored:
+  std::optional<CalibrationFile> calibration;  ///< of the device, as its file stood when it was opened
+  std::mutex origin_mutex;                     ///< of what follows, and of what the session keeps of it
+  SettingWords settings;                       ///< of the device, that were changed
+  bool origin_kept = false;                    ///< a scan of this run is in the session
+  bool pins_kept = false;                      ///< options.pins are of scans that the session has
+
   std::atomic<int> thoughts = 0;  ///< commands that are being obeyed, or whose next step is worked out
 
   void emit(const Event& event) const {
@@ -235,6 +243,24 @@ struct Engine::Impl {
   void change_settings();  ///< those that were asked for; of the acquiring thread
   bool show_camera();      ///< a frame, where one is asked for; false when none is
   void tell_panel();
+  // engine_origin.cpp
+  /// Of a session without a scan: that it goes on with this device.
+  Status keep_first_device();
+  /// A setting that was put; under the device's name, whatever the session goes on with.
+  Status keep_setting(const ChangeSetting& set);
+  Status save_device();  ///< the settings, and that the session goes on with this device; under its mutex
+  /// Rig, calibration, settings and pins, behind the first scan that this run has stored.
+  void keep_origin();
+  Status save_origin();  ///< under its mutex
+  Status save_pins();    ///< under its mutex
+  /// Rows that a program before this one left, where it scanned with the same device.
+  Status keep_origin_of_left_rows();
+  void keep_pins_of(KnownAs::Kind known);    ///< where the device has given what the session has
+  [[nodiscard]] std::string scanned_with();  ///< for the pages; empty where the session does not know
+  /// The rig that the session keeps: by it anyone works the verdict out again.
+  [[nodiscard]] std::optional<Rig> kept_rig();
+  /// Where no scan of this run is stored, its device must not change what is within reach.
+  Status judge_by_kept_rig(EngineResult& result, JobContext& job);
   // engine_motion.cpp
   Status limit_rig();  ///< by the file, the pins and what is left then
   /// To where the first scan of this run is taken from.

@@ -3,10 +3,8 @@
 #include "acquisition/rig_device.h"
 #include "formats/atomic_file.h"
 #include "formats/grid_header.h"
-#include "station/calibration_record.h"
 #include "station/engine_impl.h"
 #include "station/pin_faults.h"
-#include "station/range_camera_record.h"
 #include "station/told_session.h"
 
 namespace dubsar {
@@ -106,7 +104,7 @@ Status Engine::Impl::store_left_rows(const RangeGrid& rows, const LeftScan& left
   emit(ScanStored{*id, rows.source, static_cast<std::int64_t>(rows.valid_count()), left.remark});
   emit(Notice{
       fmt::format("a scan in whose middle the program ended is kept: {} rows, as scan {}", rows.rows, *id)});
-  return {};
+  return keep_origin_of_left_rows();
 }
 
 void Engine::Impl::take_up_left_scans() {
@@ -167,28 +165,11 @@ Status Engine::Impl::open(JobContext& job) {
   for (const std::string& line : told_of_opening(*store)) {
     emit(Notice{line});
   }
-  if (rig) {
-    if (const Status saved = store->save_document("rig", rig_to_json(*rig)); !saved) {
-      return saved;
-    }
-  }
-  if (const auto calibration = calibration_file_of(options.device)) {
-    if (const Status kept = keep_calibration(*store, *calibration); !kept) {
-      return kept;
-    }
-  }
-  if (const Status saved = keep_range_camera(*store, options.device); !saved) {
-    return saved;
-  }
+  calibration = calibration_file_of(options.device);
   if (const Status set = open_settings(); !set) {
     return set;
   }
-  if (options.pins) {
-    if (const Status saved = store->save_document("pins", pins_to_json(*options.pins)); !saved) {
-      return saved;
-    }
-  }
-  if (Result<std::optional<PinSet>> known = session_pins(*store)) {
+  if (Result<std::optional<PinSet>> known = session_pins(*store, options.pins)) {
     pins = std::move(*known);
   } else {
     emit(Notice{known.error().line()});

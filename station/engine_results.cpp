@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright The Dubsar developers
-#include "acquisition/told_device.h"
 #include "station/engine_impl.h"
 #include "station/results.h"
 #include "station/session_wedges.h"
@@ -10,6 +9,10 @@ namespace dubsar {
 /// Mesh, checklist, pictures and pages of the settled scans; the verdict and what it rests on go into the
 /// session, so that anyone can work it out again.
 Status Engine::Impl::finish(EngineResult& result, JobContext& job) {
+  if (const Status judged_so = judge_by_kept_rig(result, job); !judged_so) {
+    return judged_so;
+  }
+  const std::optional<Rig> reach = kept_rig();
   Results results{result.poses, result.red_map, {}, {}};
   {
     const StageClock timing = clock("final planning and meshing");
@@ -22,7 +25,7 @@ Status Engine::Impl::finish(EngineResult& result, JobContext& job) {
   {
     const StageClock timing = clock("checklist");
     Result<Checklist> list = checklist_of(result.red_map, result.poses, planning, results.mesh,
-                                          rig ? &*rig : nullptr, &*store, job);
+                                          reach ? &*reach : nullptr, &*store, job);
     if (!list) {
       return std::unexpected(list.error());
     }
@@ -44,7 +47,9 @@ Status Engine::Impl::finish(EngineResult& result, JobContext& job) {
 
   LapClock writing(&result.timings);
   PageFacts facts = page_facts_of(*store);
-  facts.device = told_device(options.device);
+  if (std::string device = scanned_with(); !device.empty()) {
+    facts.device = std::move(device);
+  }
   facts.timings = result.timings;
   facts.wedges = wedges ? wedge_sentence(*wedges) : std::string();
   facts.gains.insert(facts.gains.end(), planning.gains().begin(), planning.gains().end());

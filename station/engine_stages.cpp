@@ -54,6 +54,7 @@ bool Engine::Impl::is_known(const RangeGrid& grid) {
     const std::scoped_lock lock(mutex);
     device_error = device_error ? device_error : std::move(other);
   }
+  keep_pins_of(known.kind);
   return known.kind == KnownAs::Kind::kSame || known.kind == KnownAs::Kind::kOtherUnit;
 }
 
@@ -221,6 +222,7 @@ bool Engine::Impl::store_scan(int id, const RangeGrid& grid, const std::optional
   if (drive) {
     note_drive(id, *drive);
   }
+  keep_origin();
   return true;
 }
 

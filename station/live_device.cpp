@@ -89,7 +89,7 @@ void LiveSession::keep_setting(const std::string& key, const std::string& word) 
   // Without a session it is put, and kept, by the first run.
   if (SessionStore::is_session(options_.session)) {
     Result<SessionStore> store = open_for_a_word(options_.session);
-    end(store ? keep_settings(*store, device, all) : std::unexpected(store.error()));
+    end(store ? note_settings(*store, device, all) : std::unexpected(store.error()));
   }
 }
 

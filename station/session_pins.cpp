@@ -30,8 +30,8 @@ Result<std::optional<PinSet>> load(const SessionStore& store, const char* name) 
 
 }  // namespace
 
-Result<std::optional<PinSet>> session_pins(const SessionStore& store) {
-  Result<std::optional<PinSet>> pins = load(store, kFile);
+Result<std::optional<PinSet>> session_pins(const SessionStore& store, const std::optional<PinSet>& given) {
+  Result<std::optional<PinSet>> pins = given ? Result<std::optional<PinSet>>(given) : load(store, kFile);
   if (!pins) {
     return pins;
   }

@@ -12,9 +12,11 @@
 namespace dubsar {
 
 /// What a session knows of its pins: the pins file that it was begun with, and over it, scan by scan, what
-/// the operator has clicked since. Nothing where there are none. Errors: kBadInput when what is stored cannot
-/// be read, and those of SessionStore::load_document.
-[[nodiscard]] Result<std::optional<PinSet>> session_pins(const SessionStore& store);
+/// the operator has clicked since. Pins that a run was `given` stand in for the file before they are kept.
+/// Nothing where there are none. Errors: kBadInput when what is stored cannot be read, and those of
+/// SessionStore::load_document.
+[[nodiscard]] Result<std::optional<PinSet>> session_pins(const SessionStore& store,
+                                                         const std::optional<PinSet>& given = std::nullopt);
 
 /// Keeps the operator's labels of one scan, in place of those before; no tips takes them back, and the pins
 /// file holds again. Errors: kUsage for a scan that does not stand or tips that cannot be

@@ -149,6 +149,9 @@ std::optional<WedgeFile> stored_wedges(const SessionStore& store, const Mesh& me
     return std::nullopt;
   }
   Result<WedgeFile> wedges = read_wedges(store.folder() / file);
+  if (wedges) {
+    wedges->method = kWedgeMethod;  // the file of a version before this one does not say it
+  }
   return wedges ? std::optional(std::move(*wedges)) : std::nullopt;
 }
 

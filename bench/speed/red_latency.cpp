@@ -5,11 +5,14 @@
 // 100 profiles of 2048 samples a second, beside it all that a scan does otherwise. Prints what the window
 // counted. Without a display it starts one of its own (Xvfb, drawn by the processor).
 
+#include <CLI/CLI.hpp>
+
 #include <cstdio>
 #include <cstdlib>
 #include <fstream>
 #include <optional>
 
+#include "bench/support/options.h"
 #include "build_paths.h"
 #include "core/job.h"
 #include "core/log.h"
@@ -17,8 +20,12 @@
 #include "tests/ui/support/display.h"
 #include "ui/station_window.h"
 
-int main() {
+int main(int argc, char** argv) {
   using namespace dubsar;
+  CLI::App app("From a profile's arrival to the first frame that shows it", "dubsar-red-latency");
+  if (const auto status = bench::ends_with(app, argc, argv)) {
+    return *status;
+  }
   setenv("DUBSAR_DRIVER_PATH", DUBSAR_BINARY_DIR "/lib/dubsar/bench_drivers", 1);
   std::optional<test::Display> display;
   if (std::getenv("DISPLAY") == nullptr) {

@@ -4,12 +4,15 @@
 # as a whole it runs with python3.
 
 # %% A tablet that nobody pressed: its true surface and its true wedges are known.
+import os
 import sys
 
 import numpy as np
 
 import dubsar
 
+if len(sys.argv) > 1:  # a folder to keep model and wedges in; said now if it cannot be made
+    os.makedirs(sys.argv[1], exist_ok=True)
 tablet = dubsar.simulate_tablet(seed=3, size_mm=(22, 18, 10), spacing_mm=0.12, damage=0)
 grids, true_poses = dubsar.simulate_scans(tablet, views=12, spacing_mm=0.12, noise_mm=0.01)
 # With a scanner's files: grids = dubsar.read_grids("scans/", unit="m")

@@ -129,16 +129,19 @@ std::string micrometres(double mm) {
   return std::isfinite(mm) ? fmt::format("{:.0f}", 1000 * mm) : "-";
 }
 
-void print_checklist(const Checklist& list) {
-  for (std::size_t f = 0; f < kFaceCount; ++f) {
+/// Where nothing is `placed` there are no faces to tell of: a table of zeros would say that nothing is red.
+void print_checklist(const Checklist& list, bool placed) {
+  for (std::size_t f = 0; placed && f < kFaceCount; ++f) {
     const FaceCoverage& face = list.faces[f];
     std::printf("  %-8s %9.1f mm2 seen (%5.1f %%), red %.2f, excused %.2f; spacing %s um\n",
                 to_string(static_cast<Face>(f)), face.seen_mm2, 100 * face.coverage(), face.red_mm2,
                 face.excused_mm2, micrometres(face.sampling.spacing_mm.median).c_str());
   }
-  std::printf("  spacing %s um median, %s um 95 %%; %.1f %% at 25 um or finer\n",
-              micrometres(list.sampling.spacing_mm.median).c_str(),
-              micrometres(list.sampling.spacing_mm.p95).c_str(), 100 * list.sampling.fine_share);
+  if (placed) {
+    std::printf("  spacing %s um median, %s um 95 %%; %.1f %% at 25 um or finer\n",
+                micrometres(list.sampling.spacing_mm.median).c_str(),
+                micrometres(list.sampling.spacing_mm.p95).c_str(), 100 * list.sampling.fine_share);
+  }
   if (list.sign_off) {
     std::printf("  %s\n", sign_off_line(*list.sign_off).c_str());
   }
@@ -266,7 +269,7 @@ Result<int> plan(const PlanArguments& arguments, CommandContext& context) {
     CommandContext::print(json);
   } else {
     print_map(results.red_map);
-    print_checklist(results.checklist);
+    print_checklist(results.checklist, !results.red_map.scans.empty());
   }
   return results.red_map.conclusive ? 0 : 1;
 }

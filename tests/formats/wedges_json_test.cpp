@@ -164,6 +164,30 @@ TEST(WedgesJson, VolumesAreCubicMillimetresWhateverTheUnit) {
   EXPECT_EQ(back->wedges[0].sigma.volume_mm3, 0.02);
 }
 
+TEST(WedgesJson, SaysWhatMeasuredThem) {
+  WedgeFile file;
+  file.program = "Dubsar 9.8.7";
+  file.method = 3;
+  const std::string text = wedges_to_json(file);
+  EXPECT_THAT(text, ::testing::AllOf(HasSubstr("\"program\": \"Dubsar 9.8.7\""), HasSubstr("\"method\": 3")));
+  const auto back = parse_wedges(text, "w");
+  ASSERT_TRUE(back) << line_of(back);
+  EXPECT_EQ(back->program, "Dubsar 9.8.7");
+  EXPECT_EQ(back->method, 3);
+  // Files of before, and of other programs that mean something else by these words.
+  for (const char* other :
+       {R"({"wedges":[]})", R"({"program":{"name":"x"},"method":"watershed","wedges":[]})",
+        R"({"program":7,"method":-3,"wedges":[]})", R"({"method":1e300,"wedges":[]})",
+        R"({"method":18446744073709551615,"wedges":[]})", R"({"program":[],"method":2.5,"wedges":[]})"}) {
+    const auto read = parse_wedges(other, "w");
+    ASSERT_TRUE(read) << other << ": " << line_of(read);
+    EXPECT_EQ(read->program, "") << other;
+    EXPECT_EQ(read->method, 0) << other;
+    EXPECT_THAT(wedges_to_json(*read),
+                ::testing::Not(::testing::AnyOf(HasSubstr("program"), HasSubstr("method"))));
+  }
+}
+
 TEST(WedgesJson, SaysWhatTheWedgesAreOf) {
   WedgeFile file;
   file.label =

@@ -115,6 +115,8 @@ TEST(AnalyzeCommand, SaysPlainlyThatThereAreNone) {
   const auto file = read_wedges(at("w.json"));
   ASSERT_TRUE(file);
   EXPECT_TRUE(file->wedges.empty());
+  EXPECT_THAT(file->program, ::testing::StartsWith("Dubsar "));
+  EXPECT_GT(file->method, 0);
 }
 
 TEST(AnalyzeCommand, TakesTheLikelyUnitAsksForOthersAndRefusesWhatIsNoMesh) {

@@ -276,6 +276,8 @@ TEST_F(ExportOfWedges, CorrectionsOfTheSessionAreMadeAndCounted) {
   const Result<WedgeFile> left = read_wedges(at("corrected_bag") / "data/wedges/wedges.json");
   ASSERT_TRUE(left);
   EXPECT_EQ(left->corrections, 1U);
+  EXPECT_THAT(left->program, StartsWith("Dubsar "));
+  EXPECT_GT(left->method, 0);
   ASSERT_EQ(left->wedges.size(), found.size() - 1);
   EXPECT_EQ(left->wedges[3].id, found[4].id) << "the others keep their numbers";
   EXPECT_EQ(left->wedges[3].depth_point_mm, found[4].depth_point_mm);

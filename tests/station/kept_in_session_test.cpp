@@ -71,5 +71,22 @@ TEST_F(KeptInSession, DevicesStayAsEarlierVersionsKeptThem) {
   EXPECT_THAT(kept_settings(store_, "replay:scans").value(), ElementsAre(Pair("rate", "6")));
 }
 
+TEST_F(KeptInSession, ASettingOfAnotherDeviceDoesNotMakeItTheSessionsOwn) {
+  // Without a scan, the session goes on with what was touched last.
+  ASSERT_TRUE(note_settings(store_, "plate:1", {{"rate", "5"}}));
+  ASSERT_TRUE(note_settings(store_, "plate:2", {}));
+  EXPECT_EQ(own_device(store_).value(), "plate:2");
+  RangeGrid grid;
+  grid.allocate(1, 1);
+  ASSERT_TRUE(store_.add_grid(grid));
+  ASSERT_TRUE(note_settings(store_, "plate:1", {{"rate", "6"}}));
+  ASSERT_TRUE(note_settings(store_, "plate:3", {{"rate", "7"}}));
+  EXPECT_EQ(own_device(store_).value(), "plate:2");
+  EXPECT_THAT(kept_settings(store_, "plate:1").value(), ElementsAre(Pair("rate", "6")));
+  EXPECT_THAT(kept_settings(store_, "plate:3").value(), ElementsAre(Pair("rate", "7")));
+  ASSERT_TRUE(keep_settings(store_, "plate:3", {}));
+  EXPECT_EQ(own_device(store_).value(), "plate:3");
+}
+
 }  // namespace
 }  // namespace dubsar

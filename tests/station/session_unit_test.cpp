@@ -230,6 +230,7 @@ TEST_F(SessionUnit, PlanSaysWhichScansItLeavesOut) {
   const Outcome none = run_command({"plan", at("metres")});
   EXPECT_EQ(none.status, 1);
   EXPECT_THAT(none.err, AllOf(HasSubstr("--unit m"), HasSubstr("no scan is registered")));
+  EXPECT_EQ(none.out, "not conclusive\n") << "a table of zeros would say that nothing is red";
 }
 
 }  // namespace
