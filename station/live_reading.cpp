@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright The Dubsar developers
 // What a session's folder holds, for a skin to show before any device is there.
+#include <map>
 #include <optional>
 #include <set>
 #include <utility>
@@ -16,6 +17,7 @@
 #include "station/packing.h"
 #include "station/plan_again.h"
 #include "station/results.h"
+#include "station/session_drives.h"
 #include "station/session_pins.h"
 #include "station/told_session.h"
 #include "station/unfinished_scan.h"
@@ -109,6 +111,8 @@ void LiveSession::read_folder() {
     state_.verdict_kept = is_kept;
   }
   ScanSet set;
+  // How the tablet lies now says the drive of the last scan.
+  const std::map<int, Placement> drives = session_drives(*store).value_or(std::map<int, Placement>());
   for (const StoredScan& stored : *scans) {
     if (job_->cancelled() || stored.damaged) {
       continue;
@@ -116,6 +120,9 @@ void LiveSession::read_folder() {
     if (const auto grid = store->load_grid(stored.id)) {
       StationScan scan = prepare_scan(stored.id, *grid, pins);
       show_grid(stored.id, *scan.measured, *scan.grid, *scan.flags);
+      if (const auto drive = drives.find(stored.id); drive != drives.end()) {
+        scan.drive = drive->second;
+      }
       if (!is_shown && !stored.dropped) {
         set.scans.push_back(std::move(scan));
       }

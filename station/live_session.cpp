@@ -29,6 +29,7 @@ LiveSession::~LiveSession() {
   if (worker_.joinable()) {
     worker_.join();
   }
+  keeps_refused_record();  // what refused it may have let go of the session
   watch_.reset();
 }
 
@@ -193,13 +194,22 @@ void LiveSession::scan_now() {
 }
 
 void LiveSession::finish() {
-  const std::scoped_lock lock(mutex_);
-  if (engine_ && engine_->post(Finish{})) {
-    finish_asked_ = true;
-    if (state_.phase == LivePhase::kWaiting) {
-      state_.phase = LivePhase::kFinishing;  // nothing is to be turned any more, and no key scans
+  {
+    const std::scoped_lock lock(mutex_);
+    if (engine_) {
+      if (engine_->post(Finish{})) {
+        finish_asked_ = true;
+        if (state_.phase == LivePhase::kWaiting) {
+          state_.phase = LivePhase::kFinishing;  // nothing is to be turned any more, and no key scans
+        }
+      }
+      return;
+    }
+    if (!state_.exists || (busy_ && !unasked_)) {
+      return;
     }
   }
+  judge();
 }
 
 void LiveSession::stop() {
@@ -269,7 +279,18 @@ void LiveSession::describe(const TabletRecord& record) {
 void LiveSession::keep_record(const TabletRecord& record) {
   Result<SessionStore> store =
       SessionStore::open_or_create(options_.session, SessionStore::OnDamage::kRefuse);
-  end(store ? keep_tablet_record(*store, record) : std::unexpected(store.error()));
+  const Status kept = store ? keep_tablet_record(*store, record) : std::unexpected(store.error());
+  end(kept);
+  const std::scoped_lock lock(mutex_);
+  state_.record_kept = kept.has_value();
+}
+
+bool LiveSession::keeps_refused_record() {
+  const LiveState now = state();
+  if (!now.record_kept) {
+    keep_record(now.record);
+  }
+  return now.record_kept || state().record_kept;
 }
 
 void LiveSession::sign(const SignOff& wanted) {
@@ -279,6 +300,9 @@ void LiveSession::sign(const SignOff& wanted) {
       state_.phase = LivePhase::kSigning;
     }
     changed();
+    if (!keeps_refused_record()) {
+      return;
+    }
     const Result<Signing> signing = sign_verdict(options_.session, wanted, *job_);
     if (!signing) {
       end(std::unexpected(signing.error()));
@@ -306,6 +330,9 @@ void LiveSession::pack(const std::filesystem::path& to) {
       state_.package.clear();
     }
     changed();
+    if (!keeps_refused_record()) {
+      return;
+    }
     const Result<Packing> packing =
         pack_session({.session = options_.session, .to = to, .package = {}, .update = true}, *job_);
     if (!packing) {
@@ -367,6 +394,7 @@ void LiveSession::run_engine(std::vector<OperatorCommand> first, bool first_scan
     const std::optional<TabletRecord> told = std::exchange(record_told_, std::nullopt);
     record_later_ = record_later_ || result ? record_later_ : told;
     if (result) {
+      state_.record_kept = true;
       follow(result->poses);
       state_.red_map = std::make_shared<const RedMap>(result->red_map);
       state_.verdict_kept = true;

@@ -57,8 +57,10 @@ class LiveSession {
   /// is made again; whatever is asked for goes before that.
   void read();
   void scan_now();  ///< starts a run, or lets the one that waits go on
-  void finish();    ///< takes no more scans
-  void stop();      ///< cancels what is under way
+  /// Takes no more scans. Where no run is under way the verdict of what is stored is worked out and kept, as
+  /// `dubsar plan` does.
+  void finish();
+  void stop();  ///< cancels what is under way
   /// The emergency stop, whatever is under way: lasers off, nothing moves. What was scanned is kept. The
   /// camera is looked through again once watch_camera(false) was said.
   void halt();
@@ -102,7 +104,11 @@ class LiveSession {
   void show_verdict(const SessionStore& store);                                      ///< and who signed it
   /// False where it is of other poses, or there is none.
   [[nodiscard]] bool show_stored_model(const SessionStore& store, const std::vector<ScanPose>& poses);
+  void judge();
+  Status judge_stored();
   void keep_record(const TabletRecord& record);
+  /// Tries once more where the record could not be kept; false where it still cannot.
+  bool keeps_refused_record();
   void hear(const Event& event);
   void progress(std::string_view stage, double fraction);
   LiveScan& scan_of(int id);                        ///< under the mutex

@@ -95,6 +95,8 @@ struct LiveState {
   bool halted = false;            ///< the emergency stop was pressed in the run or job that goes on
   std::string notice;             ///< what the operator should know; empty when a later scan has made it old
   TabletRecord record;
+  /// Else the session could not be written to when `record` was said.
+  bool record_kept = true;
   std::shared_ptr<const PinSet> pins;        ///< with the operator's labels; nothing while none are known
   std::shared_ptr<const DevicePanel> panel;  ///< of the device that was opened last
   std::optional<RigCare> care;               ///< of the chosen device, where it is a rig

@@ -15,8 +15,8 @@
 #include "formats/files_below.h"
 #include "formats/pins_json.h"
 #include "formats/rig_json.h"
-#include "station/drives.h"
 #include "station/pin_faults.h"
+#include "station/session_drives.h"
 #include "station/session_pins.h"
 
 namespace dubsar {
@@ -84,14 +84,9 @@ Status load_session(const fs::path& path, const ScanSetOptions& options, const S
     tell(damage.line(), options);
   }
   set.word = std::move(log->word);
-  std::map<int, Placement> drives;
-  if (const auto text = store->load_document("drives"); text && *text) {
-    Result<std::map<int, Placement>> parsed =
-        parse_drives(**text, (path / "session.sqlite").string() + " (drives)");
-    if (!parsed) {
-      return std::unexpected(parsed.error());
-    }
-    drives = std::move(*parsed);
+  const Result<std::map<int, Placement>> drives = session_drives(*store);
+  if (!drives) {
+    return std::unexpected(drives.error());
   }
   Result<std::vector<ScanPose>> poses = store->poses();
   if (!poses) {
@@ -118,7 +113,7 @@ Status load_session(const fs::path& path, const ScanSetOptions& options, const S
       continue;
     }
     StationScan prepared = prepare_scan(scan.id, std::move(*grid), set.pins);
-    if (const auto drive = drives.find(scan.id); drive != drives.end()) {
+    if (const auto drive = drives->find(scan.id); drive != drives->end()) {
       prepared.drive = drive->second;
     }
     if (const Status kept = keep(std::move(prepared), options, visit, set); !kept) {

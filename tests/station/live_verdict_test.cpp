@@ -5,6 +5,9 @@
 #include <gtest/gtest.h>
 
 #include "acquisition/session_store.h"
+#include "formats/red_map_json.h"
+#include "station/plan_again.h"
+#include "station/scan_set.h"
 #include "tests/station/support/followed_session.h"
 #include "tests/support/temporary_folder.h"
 
@@ -57,6 +60,54 @@ TEST_F(LiveVerdict, IsNotOneOfARunThatWasStopped) {
   again.session.stop();
   ASSERT_TRUE(again.wait_for_rest());
   EXPECT_FALSE(again.session.state().verdict_kept) << "no page says it";
+}
+
+TEST_F(LiveVerdict, IsWorkedOutOfWhatIsStoredAndCanBeSignedWithoutAScanner) {
+  {
+    Followed followed(kSmallTablet, folder_.path() / "s");
+    followed.session.scan_now();
+    ASSERT_TRUE(followed.wait_for_phase(LivePhase::kWaiting));
+  }
+  Followed again("no-such-driver:", folder_.path() / "s");
+  again.session.read();
+  ASSERT_TRUE(again.wait_for_rest());
+  ASSERT_FALSE(again.session.state().verdict_kept);
+  const std::size_t scans = again.session.state().scans.size();
+  again.session.finish();
+  ASSERT_TRUE(again.wait_for_rest());
+  ASSERT_FALSE(again.session.state().error) << again.session.state().error->line();
+  EXPECT_TRUE(again.session.state().verdict_kept);
+  EXPECT_EQ(again.session.state().scans.size(), scans);
+  SignOff wanted;
+  wanted.name = "A. Reader";
+  wanted.incomplete = "the rim is lost";
+  again.session.sign(wanted);
+  ASSERT_TRUE(again.wait_for_rest());
+  EXPECT_FALSE(again.session.state().error);
+  EXPECT_TRUE(again.session.state().signed_off);
+}
+
+/// The motors have turned the tablet before the window was closed: how it lies now says the drive of the last
+/// scan.
+TEST_F(LiveVerdict, OfASessionThatWasLeftProposesWhatPlanProposes) {
+  {
+    Followed followed(kSmallTablet, folder_.path() / "s");
+    followed.session.scan_now();
+    ASSERT_TRUE(followed.wait_for_phase(LivePhase::kWaiting));
+  }
+  Followed again(kSmallTablet, folder_.path() / "s");
+  again.session.read();
+  ASSERT_TRUE(again.wait_for_rest());
+  const LiveState state = again.session.state();
+  ASSERT_TRUE(state.red_map);
+  JobContext job;
+  ScanSetOptions reading;
+  reading.access = SessionStore::Access::kReadOnly;
+  const ScanSet set = load_scan_set(folder_.path() / "s", reading, job).value();
+  ASSERT_NE(set.scans.back().drive->turntable_rad, set.scans.front().drive->turntable_rad);
+  const PlannedAgain planned = plan_again(set, set.poses, job).value();
+  ASSERT_FALSE(planned.results.red_map.next.empty());
+  EXPECT_EQ(red_map_to_json(*state.red_map), red_map_to_json(planned.results.red_map));
 }
 
 /// A key that was pressed by mistake costs nothing.

@@ -172,6 +172,27 @@ click tablet
 wait cdli
 pause 0.2
 expect title-whole
+expect whole.close-tablet
+expect whole.next-tablet
+key escape
+pause 0.2
+key enter
+wait idle 60
+key enter
+wait sign-name
+pause 0.2
+type A. Reader
+key enter
+wait lacks.sign-incomplete
+pause 0.2
+type the rim is lost
+key enter
+wait signed
+click calibration
+wait verify-artefact
+pause 0.2
+expect whole.verify-now
+expect whole.close-calibration
 key escape
 pause 0.2
 click viewer

@@ -4,7 +4,9 @@
 #include <GLFW/glfw3.h>
 
 #include <algorithm>
+#include <utility>
 
+#include "archive/seen_line.h"
 #include "station/session_name.h"
 #include "ui/operator/operator_screen.h"
 #include "ui/shell/sound.h"
@@ -12,6 +14,8 @@
 namespace dubsar::ui {
 
 namespace {
+
+constexpr float kRecordLines = 6;  ///< of a tablet
 
 /// Begins a modal box of that width in the middle of the window, when it is open.
 bool begin_box(UiContext& ui, const char* title, const char* id, bool& open, float width) {
@@ -34,12 +38,16 @@ bool begin_box(UiContext& ui, const char* title, const char* id, bool& open, flo
   return true;
 }
 
-/// The button that a box is for; the keys and the pedal that have opened the box do the same when they are
-/// pressed again. In a line that is typed into, end goes to its end.
+/// The keys and the pedal that have opened a box do what it is for when they are pressed again. In a line
+/// that is typed into, end goes to its end.
+bool confirms() {
+  return any_pressed({GLFW_KEY_ENTER, GLFW_KEY_KP_ENTER, GLFW_KEY_F11}) ||
+         (!ImGui::GetIO().WantTextInput && any_pressed({GLFW_KEY_END}));
+}
+
+/// The button that a box is for.
 bool confirmed(UiContext& ui, const char* name, Text text, bool enough) {
-  const bool pressed = any_pressed({GLFW_KEY_ENTER, GLFW_KEY_KP_ENTER, GLFW_KEY_F11}) ||
-                       (!ImGui::GetIO().WantTextInput && any_pressed({GLFW_KEY_END}));
-  const bool by_key = enough && pressed && !ImGui::IsWindowAppearing();
+  const bool by_key = enough && confirms() && !ImGui::IsWindowAppearing();
   return plain_button(ui, name, ui.text(text), enough) || by_key;
 }
 
@@ -95,6 +103,15 @@ void OperatorScreen::draw_tablet(UiContext& ui) {
   }
   // What is typed is kept when its line is left: a window that is killed meanwhile takes nothing with it.
   bool left_line = false;
+  // Lines that letters make too high are scrolled through; what ends the box is always in sight.
+  const float line_high = ImGui::GetTextLineHeightWithSpacing() + ImGui::GetFrameHeightWithSpacing();
+  const float most = 0.98F * ImGui::GetIO().DisplaySize.y - ImGui::GetCursorPosY() -
+                     2 * ImGui::GetTextLineHeightWithSpacing() - ImGui::GetFrameHeightWithSpacing() -
+                     ImGui::GetStyle().WindowPadding.y;
+  const bool scrolls = kRecordLines * line_high > most;
+  if (scrolls) {
+    ImGui::BeginChild("lines", {0, most});
+  }
   const auto line = [&](const char* name, Text label, std::string& value) {
     text_line(ui, name, ui.text(label), value);
     left_line = left_line || ImGui::IsItemDeactivatedAfterEdit();
@@ -109,8 +126,12 @@ void OperatorScreen::draw_tablet(UiContext& ui) {
   line("operator", Text::kOperator, record_.operator_name);
   line("rights", Text::kRights, record_.rights);
   line("notes", Text::kNotes, record_.notes);
+  if (scrolls) {
+    ImGui::EndChild();
+  }
   ImGui::PushFont(ui.fonts.small);
-  coloured_text(ui.colours.faint, ui.text(Text::kKept));
+  coloured_text(state_.record_kept ? ui.colours.faint : ui.colours.amber,
+                ui.text(state_.record_kept ? Text::kKept : Text::kRecordNotKept));
   ImGui::PopFont();
   const bool close = plain_button(ui, "close-tablet", ui.text(Text::kClose), cdli_good);
   ImGui::SameLine();
@@ -121,7 +142,7 @@ void OperatorScreen::draw_tablet(UiContext& ui) {
     TabletRecord said = record_;
     said.cdli = cdli_good ? record_.cdli : said_record_.cdli;
     ui.preferences.operator_name = said.operator_name;
-    if (!(said == said_record_)) {
+    if (!(said == said_record_) || (close && !state_.record_kept)) {
       session_.describe(said);
       said_record_ = said;
     }
@@ -137,7 +158,8 @@ void OperatorScreen::draw_tablet(UiContext& ui) {
 
 std::string OperatorScreen::title_of(const UiContext& ui, Text what) const {
   const std::string& number = state_.record.museum_number;
-  return fmt::format("{}: {}", ui.text(what), number.empty() ? session_name(session_.folder()) : number);
+  return fmt::format("{}: {}", ui.text(what),
+                     seen_line(number.empty() ? session_name(session_.folder()) : number));
 }
 
 void OperatorScreen::draw_signing(UiContext& ui) {
@@ -153,21 +175,32 @@ void OperatorScreen::draw_signing(UiContext& ui) {
       coloured_text(ui.colours.amber, warning.c_str());
     }
   }
-  // The first line that lacks has the cursor: whoever signs needs no mouse.
-  const bool appears = ImGui::IsWindowAppearing();
-  if (appears && !says(sign_name_)) {
-    ImGui::SetKeyboardFocusHere();
-  }
-  text_line(ui, "sign-name", ui.text(Text::kSignName), sign_name_);
-  text_line(ui, "sign-role", ui.text(Text::kSignRole), sign_role_);
   const bool conclusive = state_.red_map && state_.red_map->conclusive;
-  if (!conclusive) {
-    if (appears && says(sign_name_) && !says(sign_incomplete_)) {
+  const bool enough = says(sign_name_) && (conclusive || says(sign_incomplete_));
+  // The first line that lacks has the cursor: whoever signs needs no mouse. So too when enter was too early.
+  const bool appears = ImGui::IsWindowAppearing();
+  const bool too_early = !appears && !enough && confirms();
+  sign_too_early_ = !enough && (too_early || (sign_too_early_ && !appears));
+  bool asks = appears || too_early;
+  const auto line = [&](const char* name, Text label, std::string& value) {
+    const bool lacks = !says(value);
+    if (std::exchange(asks, asks && !lacks) && lacks) {
       ImGui::SetKeyboardFocusHere();
     }
-    text_line(ui, "sign-incomplete", ui.text(Text::kSignIncomplete), sign_incomplete_);
+    const bool marked = lacks && sign_too_early_;
+    const Eigen::Vector4f c = marked ? ui.colours.amber : ui.colours.text;
+    ImGui::PushStyleColor(ImGuiCol_Text, ImVec4(c.x(), c.y(), c.z(), c.w()));
+    text_line(ui, name, ui.text(label), value);
+    ImGui::PopStyleColor();
+    if (marked) {
+      ui.facts.insert(std::string("lacks.") + name);
+    }
+  };
+  line("sign-name", Text::kSignName, sign_name_);
+  text_line(ui, "sign-role", ui.text(Text::kSignRole), sign_role_);
+  if (!conclusive) {
+    line("sign-incomplete", Text::kSignIncomplete, sign_incomplete_);
   }
-  const bool enough = says(sign_name_) && (conclusive || says(sign_incomplete_));
   // The line that has the cursor by itself must not cost a second escape.
   if (!enough && ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape), false)) {
     ImGui::CloseCurrentPopup();

@@ -120,12 +120,8 @@ void CalibrationDialog::draw_verify(UiContext& ui, const LiveState& state) {
   text_line(ui, "verify-scan", ui.text(Text::kVerifyScan), verify_.scan);
   text_line(ui, "verify-calibration", ui.text(Text::kCalibrationFile), verify_.calibration);
   ui.facts.insert("verifies " + (verify_.calibration.empty() ? "nothing" : verify_.calibration));
-  if (plain_button(ui, "verify-now", ui.text(Text::kVerifyNow),
-                   !session_.busy() && !verify_.artefact.empty() && !verify_.scan.empty())) {
-    session_.verify(verify_);
-  }
-  ImGui::Separator();
   if (state.verification) {
+    ImGui::Separator();
     draw_outcome(ui, *state.verification);
   }
 }
@@ -217,6 +213,21 @@ void CalibrationDialog::draw_calibrate(UiContext& ui, const LiveState& state) {
   draw_shots(ui);
   text_line(ui, "calibrate-out", ui.text(Text::kCalibrationFile), out_);
   ui.facts.insert("keeps-to " + out_);
+  if (state.calibration) {
+    ImGui::Separator();
+    draw_report(ui, *state.calibration);
+  }
+}
+
+/// What a page is for: below it, where no scrolling hides it.
+void CalibrationDialog::draw_action(UiContext& ui, const LiveState& state) {
+  if (verifying_) {
+    if (plain_button(ui, "verify-now", ui.text(Text::kVerifyNow),
+                     !session_.busy() && !verify_.artefact.empty() && !verify_.scan.empty())) {
+      session_.verify(verify_);
+    }
+    return;
+  }
   const bool room = temperature_.empty() || calibrate_.temperature_c;
   const bool may = !session_.busy() && !calibrate_.folder.empty() && room;
   if (plain_button(ui, "calibrate-now", ui.text(Text::kCalibrateNow), may)) {
@@ -228,10 +239,6 @@ void CalibrationDialog::draw_calibrate(UiContext& ui, const LiveState& state) {
                    may && state.calibration && !out_.empty())) {
     calibrate_.out = out_;
     session_.calibrate(calibrate_);
-  }
-  ImGui::Separator();
-  if (state.calibration) {
-    draw_report(ui, *state.calibration);
   }
 }
 
@@ -277,7 +284,20 @@ void CalibrationDialog::draw(UiContext& ui, const LiveState& state) {
     verifying_ = false;
   }
   ui.target("page-calibrate");
-  const float foot = 2 * ImGui::GetFrameHeightWithSpacing() + ImGui::GetTextLineHeightWithSpacing();
+  const bool refused = !session_.busy() && state.error;
+  const std::string told = session_.busy() ? std::string()
+                           : refused       ? translated(*state.error, ui.preferences.language)
+                                           : translated(state.notice, ui.preferences.language);
+  const ImFont* small = ui.fonts.small;
+  const float gap = ImGui::GetStyle().ItemSpacing.y;
+  const float told_high =
+      session_.busy() ? 2 * (small->FontSize + gap) + 2 * ImGui::GetStyle().FramePadding.y
+      : told.empty()
+          ? 0.0F
+          : gap +
+                small->CalcTextSizeA(small->FontSize, 1e6F, ImGui::GetContentRegionAvail().x, told.c_str()).y;
+  const float foot =
+      std::min(told_high, 0.3F * ImGui::GetContentRegionAvail().y) + gap + ImGui::GetFrameHeightWithSpacing();
   const ImVec2 room{ImGui::GetContentRegionAvail().x, ImGui::GetContentRegionAvail().y - foot};
   const float right = verifying_ ? 0 : 0.42F * room.x;
   ImGui::BeginChild("page", {room.x - right, room.y}, true);
@@ -303,16 +323,15 @@ void CalibrationDialog::draw(UiContext& ui, const LiveState& state) {
       ImGui::SameLine();
       job_bar(ui, time_left_, state.stage, state.fraction);
     }
-  } else if (state.error) {
-    ui.facts.insert("calibration-refused");
-    coloured_text(ui.colours.bad, translated(*state.error, ui.preferences.language).c_str());
-  } else {
-    if (state.notice.starts_with("kept: ")) {
-      ui.facts.insert("calibration-kept");
-    }
-    coloured_text(ui.colours.faint, translated(state.notice, ui.preferences.language).c_str());
+  } else if (!told.empty()) {
+    ui.facts.insert(refused                              ? "calibration-refused"
+                    : state.notice.starts_with("kept: ") ? "calibration-kept"
+                                                         : "calibration-told");
+    coloured_text(refused ? ui.colours.bad : ui.colours.faint, told.c_str());
   }
   ImGui::PopFont();
+  draw_action(ui, state);
+  ImGui::SameLine();
   if (plain_button(ui, "close-calibration", ui.text(Text::kClose))) {
     ImGui::CloseCurrentPopup();
   }

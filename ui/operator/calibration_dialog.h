@@ -29,6 +29,7 @@ class CalibrationDialog {
   void draw_stage(UiContext& ui);
   void draw_shots(UiContext& ui);
   void take_shot();
+  void draw_action(UiContext& ui, const LiveState& state);
   void draw_camera(UiContext& ui, ImVec2 size);
   LiveSession& session_;
   std::string device_;  ///< when it was opened last

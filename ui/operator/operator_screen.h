@@ -121,6 +121,7 @@ class OperatorScreen {
   TabletRecord said_record_;  ///< to the session
   bool record_taken_ = false;
   std::string sign_name_, sign_role_, sign_incomplete_;
+  bool sign_too_early_ = false;  ///< enter was pressed while a line lacked
   std::string package_folder_, next_folder_;
   std::optional<std::filesystem::path> next_session_;
   bool open_sign_ = false, open_tablet_ = false, open_settings_ = false;

@@ -25,6 +25,12 @@ Eigen::Vector3d behind(const RangeGrid& grid, const Eigen::Vector3d& point_mm, d
   return point_mm - by_mm * grid.view.to_camera(point_mm, 0.5 * grid.rows);
 }
 
+/// Pixels a sample in a picture that fills such a room.
+float scale_in(const RangeGrid& grid, ImVec2 room) {
+  return std::min(room.x / static_cast<float>(std::max(1, grid.cols)),
+                  room.y / static_cast<float>(std::max(1, grid.rows)));
+}
+
 }  // namespace
 
 void PinDialog::take(Side& side, const LiveScan& scan) {
@@ -78,8 +84,11 @@ void PinDialog::open(const LiveScan& scan, const LiveState& state) {
 }
 
 void PinDialog::draw_labels(UiContext& ui) {
-  const float side = ui.px(1.9F);
-  const float row_end = ImGui::GetCursorScreenPos().x + ImGui::GetContentRegionAvail().x;
+  // In one row where a glove still finds them: a second one would take its height from the pictures.
+  const float wide = ImGui::GetContentRegionAvail().x;
+  const float gaps = ui.px(0.8F) + ui.px(0.15F) * (kPinNumbers + kRimPlaces - 2);
+  const float side = std::clamp((wide - gaps) / (kPinNumbers + kRimPlaces) - 0.5F, ui.px(1.6F), ui.px(1.9F));
+  const float row_end = ImGui::GetCursorScreenPos().x + wide;
   for (int k = 0; k < kPinNumbers + kRimPlaces; ++k) {
     const int label = k < kPinNumbers ? k + 1 : kFirstRimLabel + k - kPinNumbers;
     const bool in_left = left_.marks.contains(label);
@@ -150,27 +159,42 @@ void PinDialog::draw_panes(UiContext& ui, float foot_px) {
   for (const LiveScan& other : others_) {
     ids.push_back(other.id);
   }
-  const float choices = rows_of(ids, half.x - ui.px(1.2F)) * ImGui::GetFrameHeightWithSpacing();
-  const ImVec2 picture{half.x - ui.px(1.2F), half.y - choices - 1.4F * ImGui::GetFrameHeightWithSpacing()};
+  const ImVec2 padding = ImGui::GetStyle().WindowPadding;
+  const ImVec2 picture{half.x - 2 * padding.x - 2,
+                       half.y - 2 * padding.y - ImGui::GetTextLineHeightWithSpacing() - 2};
   ImGui::BeginChild("left", half, true);
   ImGui::TextUnformatted(fmt::format("{} {}", ui.text(Text::kScanGrowing), left_.scan.id).c_str());
-  ImGui::Dummy({1, choices - ImGui::GetStyle().ItemSpacing.y});
   draw_side(ui, "pins-left", left_, picture);
   ImGui::EndChild();
   if (!two) {
     return;
   }
+  // The scans to choose from stand where the picture is larger: above it, or beside it.
+  const ImVec2 above{picture.x, picture.y - rows_of(ids, picture.x) * ImGui::GetFrameHeightWithSpacing()};
+  const ImVec2 beside{picture.x - ui.px(5), picture.y};
+  const bool is_beside = scale_in(*right_.scan.measured, beside) > scale_in(*right_.scan.measured, above);
+  // What was clicked in it would be lost with it: first it is used or cleared.
+  int chosen = right_.scan.id;
+  const auto choose = [&] {
+    ImGui::BeginDisabled(right_.changed);
+    if (one_of(ui, "pins-with", ids, chosen)) {
+      take(right_, *std::ranges::find(others_, chosen, &LiveScan::id));
+    }
+    ImGui::EndDisabled();
+  };
   ImGui::SameLine();
   ImGui::BeginChild("right", half, true);
   ImGui::TextUnformatted(fmt::format("{} {}", ui.text(Text::kScanGrowing), right_.scan.id).c_str());
-  // What was clicked in it would be lost with it: first it is used or cleared.
-  int chosen = right_.scan.id;
-  ImGui::BeginDisabled(right_.changed);
-  if (one_of(ui, "pins-with", ids, chosen)) {
-    take(right_, *std::ranges::find(others_, chosen, &LiveScan::id));
+  if (!is_beside) {
+    choose();
   }
-  ImGui::EndDisabled();
-  draw_side(ui, "pins-right", right_, picture);
+  draw_side(ui, "pins-right", right_, is_beside ? beside : above);
+  if (is_beside) {
+    ImGui::SameLine(beside.x + padding.x + ImGui::GetStyle().ItemSpacing.x);
+    ImGui::BeginChild("choices", {0, picture.y});
+    choose();
+    ImGui::EndChild();
+  }
   ImGui::EndChild();
 }
 

@@ -167,7 +167,8 @@ void OperatorScreen::draw_left(UiContext& ui, ImVec2 size) {
   if (!state_.record.museum_number.empty()) {
     tablet += ": " + state_.record.museum_number;
   }
-  if (big_button(ui, "tablet", tablet.c_str(), nullptr, wide)) {
+  const bool is_kept = state_.record_kept;
+  if (big_button(ui, "tablet", tablet.c_str(), is_kept ? nullptr : ui.text(Text::kNotKept), wide)) {
     open_tablet_ = true;
   }
   const ImVec2 half{0.5F * (ImGui::GetContentRegionAvail().x - ImGui::GetStyle().ItemSpacing.x), wide.y};

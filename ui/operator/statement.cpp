@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cctype>
 
+#include "archive/seen_line.h"
 #include "ui/shell/widgets.h"
 
 namespace dubsar::ui {
@@ -43,6 +44,17 @@ bool add_warnings(Statement& out, const LiveState& state, Language language) {
 
 bool is_turned_by_hand(const NextView& next) {
   return next.placement && next.placement->hand_turn;
+}
+
+/// A run was stopped, or the window closed: what is shown is not in the session, and no name goes under it
+/// yet.
+bool lacks_verdict(const LiveState& state) {
+  return newest_standing(state) != nullptr && state.red_map && !state.verdict_kept && !state.signed_off;
+}
+
+/// What the red map would do next is for motors, and no run asks for it yet.
+bool is_driven(const LiveState& state) {
+  return state.red_map && !state.red_map->next.empty() && state.red_map->next.front().placement;
 }
 
 /// What the hand does, and what the motors do behind it: "turn …; then turntable to …". Either may be empty.
@@ -131,6 +143,8 @@ void say_waiting(Statement& out, const LiveState& state, Wording wording) {
                         *last)) {  // nothing drives this scanner: it waits while its scan is still judged
     out.headline = text_of(Text::kJudging, language);
     out.detail = text_of(Text::kJudgedWhileWaiting, language);
+  } else if (is_driven(state)) {  // the step would have come with the waiting: there is none to turn for
+    out.headline = text_of(Text::kScanAsItLies, language);
   } else if (state.red_map && !state.red_map->next.empty()) {
     out.headline = capitalised(translated(state.red_map->next.front().say, language));
     out.detail = text_of(Text::kThenScan, wording);
@@ -159,6 +173,7 @@ void say_still(Statement& out, const LiveState& state, bool has_device, Wording 
     out.detail = translated(*state.error, language);
     out.scan_label = out.may_next ? Text::kNextTablet : Text::kGoOn;
     out.may_sign = conclusive && !state.signed_off;
+    out.may_finish = lacks_verdict(state);
   } else if (!has_device) {
     out.headline = text_of(Text::kChooseDevice, language);
     out.tone = Tone::kAsk;
@@ -175,8 +190,8 @@ void say_still(Statement& out, const LiveState& state, bool has_device, Wording 
   } else if (state.signed_off) {
     const bool packed = !state.package.empty();
     out.headline =
-        filled(text_of(packed ? Text::kSignedNext : Text::kSignedPack, language), state.signed_by.c_str());
-    out.detail = packed       ? filled(text_of(Text::kPackageKept, language), state.package.string())
+        filled(text_of(packed ? Text::kSignedNext : Text::kSignedPack, language), seen_line(state.signed_by));
+    out.detail = packed ? filled(text_of(Text::kPackageKept, language), seen_line(state.package.string()))
                  : conclusive ? text_of(Text::kIntoItsBox, language)
                               : std::string();
     if (!conclusive) {
@@ -197,8 +212,11 @@ void say_still(Statement& out, const LiveState& state, bool has_device, Wording 
     out.scan_label = Text::kGoOn;
     // As incomplete, with the reason.
     out.may_sign = state.red_map != nullptr && state.verdict_kept;
+    out.may_finish = lacks_verdict(state);
     out.detail = broken_off;
-    if (state.red_map && !state.red_map->next.empty()) {
+    if (is_driven(state)) {  // whatever is next, the run begins with a scan of how the tablet lies
+      add_sentence(out.detail, text_of(Text::kFirstAsItLies, language));
+    } else if (state.red_map && !state.red_map->next.empty()) {
       add_sentence(out.detail, what_is_next(state.red_map->next.front(), language));
     }
     add_warnings(out, state, language);

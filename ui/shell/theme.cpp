@@ -135,11 +135,13 @@ Colours colours_of(const Preferences& preferences) {
 Fonts load_fonts(float px) {
   ImGuiIO& io = ImGui::GetIO();
   io.Fonts->Clear();
-  // Latin with its accents and those of transliteration (ḫ, ṣ, ṭ, ʾ, sign numbers such as du₃), Greek and
-  // Cyrillic for names, general punctuation and arrows.
-  static const ImWchar kRanges[] = {0x0020, 0x017F, 0x0218, 0x021B, 0x02BE, 0x02BF, 0x0370, 0x03FF, 0x0400,
-                                    0x045F, 0x0490, 0x0491, 0x1E0C, 0x1E6F, 0x2010, 0x203A, 0x2070, 0x209F,
-                                    0x2190, 0x21FF, 0x25A0, 0x25FF, 0x2713, 0x2717, 0};
+  // Latin with its accents and those of transliteration (ḫ, ṣ, ṭ, ʾ, sign numbers such as du₃), Greek,
+  // Cyrillic, Hebrew and Arabic with its joined forms (archive/seen_line.h) for names, general punctuation
+  // and arrows.
+  static const ImWchar kRanges[] = {0x0020, 0x017F, 0x0218, 0x021B, 0x02BE, 0x02BF, 0x0370, 0x03FF,
+                                    0x0400, 0x045F, 0x0490, 0x0491, 0x0590, 0x06FF, 0x1E0C, 0x1E6F,
+                                    0x2010, 0x203A, 0x2070, 0x209F, 0x2190, 0x21FF, 0x25A0, 0x25FF,
+                                    0x2713, 0x2717, 0xFB1D, 0xFBFF, 0xFE70, 0xFEFC, 0};
   Fonts fonts;
   for (const char* file : kFontFiles) {
     std::error_code error;

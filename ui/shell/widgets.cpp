@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "archive/seen_line.h"
+
 namespace dubsar::ui {
 
 namespace {
@@ -86,9 +88,10 @@ bool big_button(UiContext& ui, const char* name, const char* label, const char* 
   if (in_small) {
     ImGui::PushFont(ui.fonts.small);
   }
-  const std::string shown = shortened(label, high.x - low.x - ui.px(0.4F));
-  if (shown != label && ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled)) {
-    ImGui::SetTooltip("%s", label);
+  const std::string cut = shortened(label, high.x - low.x - ui.px(0.4F));
+  const std::string shown = seen_line(cut);
+  if (cut != label && ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled)) {
+    ImGui::SetTooltip("%s", seen_line(label).c_str());
   }
   const ImVec2 label_size = ImGui::CalcTextSize(shown.c_str());
   const float small = ui.fonts.small->FontSize;
@@ -125,6 +128,11 @@ bool plain_button(UiContext& ui, const char* name, const char* label, bool enabl
 
 bool text_line(UiContext& ui, const char* name, const char* label, std::string& value) {
   ImGui::TextUnformatted(label);
+  // What is typed stands in the line letter by letter; whoever writes from right to left reads it here.
+  if (const std::string seen = seen_line(value); seen != value) {
+    ImGui::SameLine(0, ui.px(1));
+    coloured_text(ui.colours.ghost, seen.c_str());
+  }
   return short_text(ui, name, value, -1);
 }
 

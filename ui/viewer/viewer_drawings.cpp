@@ -102,6 +102,9 @@ void ViewerScreen::draw_tape(UiContext& ui, ImVec2 origin, ImVec2 size) const {
     const ImVec2 a = at(tape_[0].cast<double>());
     const ImVec2 b = at(tape_[1].cast<double>());
     draw->AddLine(a, b, ink, 2.5F);
+    if (tool_ == Tool::kSection) {
+      return;  // the plot says the length of its cut, which runs along the plane of view
+    }
     const std::string words =
         fmt::format("{} mm", decimal((tape_[1] - tape_[0]).norm(), 3, ui.preferences.language));
     const ImVec2 box = ImGui::CalcTextSize(words.c_str());

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <chrono>
 
+#include "archive/seen_line.h"
 #include "ui/gl/gl_window.h"
 #include "ui/viewer/viewer_screen.h"
 
@@ -248,7 +249,7 @@ void ViewerScreen::draw_kept_selections(UiContext& ui) {
   for (const MeshSelection& selection : kept) {
     const bool chosen = selection.name == selection_name_;
     is_kept = is_kept || chosen;
-    if (ImGui::Selectable(fmt::format("{}##kept", selection.name).c_str(), chosen) && !selects()) {
+    if (ImGui::Selectable(fmt::format("{}##kept", seen_line(selection.name)).c_str(), chosen) && !selects()) {
       show_selection(selection);
     }
     ui.target(fmt::format("kept.{}", ++row));

@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+// What is said of the tablet where the session cannot be written to.
+#include <gtest/gtest.h>
+
+#include <optional>
+
+#include "acquisition/session_store.h"
+#include "tests/station/support/followed_session.h"
+#include "tests/support/temporary_folder.h"
+
+namespace dubsar {
+namespace {
+
+using test::Followed;
+using test::kSmallTablet;
+
+class LiveRecord : public ::testing::Test {
+ protected:
+  [[nodiscard]] std::filesystem::path session() const { return folder_.path() / "s"; }
+  [[nodiscard]] std::string kept_number() const {
+    return tablet_record_of(SessionStore::open(session(), SessionStore::Access::kReadOnly).value())
+        .museum_number;
+  }
+  static TabletRecord bm_15285() {
+    TabletRecord record;
+    record.museum_number = "BM 15285";
+    return record;
+  }
+  test::TemporaryFolder folder_;
+};
+
+TEST_F(LiveRecord, ThatWasRefusedIsSaidToBeAndIsKeptWhenItIsSaidAgain) {
+  std::optional<SessionStore> another = SessionStore::open_or_create(session()).value();
+  Followed followed(kSmallTablet, session());
+  followed.session.read();
+  ASSERT_TRUE(followed.wait_for_rest());
+  followed.session.describe(bm_15285());
+  ASSERT_TRUE(followed.wait_for_rest());
+  EXPECT_TRUE(followed.session.state().error);
+  EXPECT_FALSE(followed.session.state().record_kept);
+  EXPECT_EQ(followed.session.state().record.museum_number, "BM 15285") << "nobody types it twice";
+  EXPECT_EQ(kept_number(), "");
+  another.reset();
+  followed.session.describe(bm_15285());
+  ASSERT_TRUE(followed.wait_for_rest());
+  EXPECT_TRUE(followed.session.state().record_kept);
+  EXPECT_EQ(kept_number(), "BM 15285");
+}
+
+TEST_F(LiveRecord, ThatWasRefusedIsKeptAtTheLatestWhenItsWindowIsShut) {
+  {
+    std::optional<SessionStore> another = SessionStore::open_or_create(session()).value();
+    Followed followed(kSmallTablet, session());
+    followed.session.describe(bm_15285());
+    ASSERT_TRUE(followed.wait_for_rest());
+    ASSERT_FALSE(followed.session.state().record_kept);
+    another.reset();
+  }
+  EXPECT_EQ(kept_number(), "BM 15285");
+}
+
+TEST_F(LiveRecord, ThatWasRefusedIsKeptByTheNextRun) {
+  std::optional<SessionStore> another = SessionStore::open_or_create(session()).value();
+  Followed followed(kSmallTablet, session());
+  followed.session.describe(bm_15285());
+  ASSERT_TRUE(followed.wait_for_rest());
+  another.reset();
+  followed.session.scan_now();
+  ASSERT_TRUE(followed.wait_for_phase(LivePhase::kWaiting));
+  followed.session.finish();
+  ASSERT_TRUE(followed.wait_for_rest());
+  EXPECT_TRUE(followed.session.state().record_kept);
+  EXPECT_EQ(kept_number(), "BM 15285");
+}
+
+}  // namespace
+}  // namespace dubsar
