@@ -35,6 +35,8 @@ OrderedJson region_json(const RedRegion& region) {
   json["state"] = region.state == RegionState::kRed ? "red" : "excused";
   if (region.excuse != Excuse::kNone) {
     json["excuse"] = region.excuse == Excuse::kUnreachable ? "unreachable" : "unneeded";
+  }
+  if (region.excuse != Excuse::kNone || !region.reason.empty()) {
     json["reason"] = region.reason;
   }
   return json;

@@ -48,7 +48,7 @@ class Pieces {
         red_(red),
         parts_(static_cast<std::uint32_t>(cover.parts().size())),
         sets_(parts_ + red.targets.size()),
-        patches_(cluster_targets(red, scans, cover.reach_mm() + red.cell_mm, 0.0, false)) {
+        patches_(cluster_targets(red, scans, 0.0, 0.0, false, cover.reach_mm() + red.cell_mm)) {
     std::erase_if(patches_, [&](const std::vector<std::uint32_t>& patch) {
       return red.targets[patch.front()].state != RegionState::kRed;
     });

@@ -22,14 +22,20 @@ bool alike(const RedTarget& a, const RedTarget& b) {
 }
 
 void join_near(const RedTargets& red, std::span<const std::uint32_t> members, double radius_mm,
-               UnionFind& sets) {
-  PointCells cells(radius_mm);
+               double at_least_mm, UnionFind& sets) {
+  PointCells cells(std::max(radius_mm, at_least_mm));
   for (const std::uint32_t i : members) {
     cells.add(red.targets[i].position_mm, i);
   }
   for (const std::uint32_t i : members) {
     cells.for_each_within(red.targets[i].position_mm, [&](std::uint32_t j) {
-      if (j > i && alike(red.targets[i], red.targets[j])) {
+      const RedTarget& a = red.targets[i];
+      const RedTarget& b = red.targets[j];
+      if (j <= i || !alike(a, b)) {
+        return;
+      }
+      const double near_mm = std::max(at_least_mm, radius_mm * std::max(a.cell_share, b.cell_share));
+      if ((a.position_mm - b.position_mm).squaredNorm() <= near_mm * near_mm) {
         sets.join(i, j);
       }
     });
@@ -102,7 +108,8 @@ std::vector<std::vector<std::uint32_t>> UnionFind::groups() {
 
 std::vector<std::vector<std::uint32_t>> cluster_targets(const RedTargets& red,
                                                         std::span<const PlacedScan> scans, double radius_mm,
-                                                        double grid_reach_mm, bool unseen_too) {
+                                                        double grid_reach_mm, bool unseen_too,
+                                                        double at_least_mm) {
   std::vector<std::uint32_t> members;
   for (std::uint32_t i = 0; i < red.targets.size(); ++i) {
     if (unseen_too || !red.targets[i].unseen) {
@@ -110,7 +117,7 @@ std::vector<std::vector<std::uint32_t>> cluster_targets(const RedTargets& red,
     }
   }
   UnionFind sets(red.targets.size());
-  join_near(red, members, radius_mm, sets);
+  join_near(red, members, radius_mm, at_least_mm, sets);
   join_along_grids(red, scans, grid_reach_mm, sets);
   std::map<std::uint32_t, std::vector<std::uint32_t>> groups;
   for (const std::uint32_t i : members) {

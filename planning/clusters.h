@@ -23,13 +23,15 @@ class UnionFind {
   std::vector<std::uint32_t> parent_;
 };
 
-/// Groups targets that hang together and share state and excuse: neighbours in space within radius_mm, and
-/// neighbours in a scan's grid whose targets lie within grid_reach_mm (the two rims of a gap). With
-/// `unseen_too` false only targets with samples are grouped. Returns the members of each group, ascending,
-/// groups by their lowest member.
+/// Groups targets that hang together and share state and excuse: neighbours in space within radius_mm (of
+/// which each counts its cell_share, the greater one), and at least within at_least_mm; and neighbours in a
+/// scan's grid whose targets lie within grid_reach_mm (the two rims of a gap). With `unseen_too` false only
+/// targets with samples are grouped. Returns the members of each group, ascending, groups by their lowest
+/// member.
 [[nodiscard]] std::vector<std::vector<std::uint32_t>> cluster_targets(const RedTargets& red,
                                                                       std::span<const PlacedScan> scans,
                                                                       double radius_mm, double grid_reach_mm,
-                                                                      bool unseen_too);
+                                                                      bool unseen_too,
+                                                                      double at_least_mm = 0);
 
 }  // namespace dubsar

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/placed_scan.h"
+#include "planning/next_view.h"
 #include "planning/red_targets.h"
 #include "planning/surface_cover.h"
 
@@ -39,10 +40,10 @@ void excuse_unneeded(std::span<const PlacedScan> scans, const SurfaceCover& cove
                      const ExcuseOptions& options, RedTargets& red);
 
 /// Unneeded: specks, groups of red that cover no more than speck_spacings2 µ² and are no wider than
-/// largest_gap_mm: those that speck_tries scans looked at and found nothing more; and the last ones, when all
-/// that is still red is, together, below speck_budget of the tablet's surface, where a straight line closes
-/// them: the rule of 3µ lets gaps of that size pass anywhere. surface_mm2: of the tablet. The targets' tries
-/// must be known (note_tries()).
+/// largest_gap_mm: those that speck_tries scans, each from elsewhere, looked at and found nothing more; and
+/// the last ones, when all that is still red is, together, below speck_budget of the tablet's surface, where
+/// a straight line closes them: the rule of 3µ lets gaps of that size pass anywhere. surface_mm2: of the
+/// tablet. The targets' tries must be known (note_tries()).
 void excuse_specks(std::span<const PlacedScan> scans, const SurfaceCover& cover, double surface_mm2,
                    const ExcuseOptions& options, RedTargets& red);
 
@@ -57,9 +58,10 @@ void excuse_last_specks(std::span<const PlacedScan> scans, const SurfaceCover& c
 void excuse_strays(std::span<const PlacedScan> scans, std::span<const double> noise_mm,
                    const ModelSurface& surface, const ExcuseOptions& options, RedTargets& red);
 
-/// What nothing will clear is unreachable where it hangs together over more than largest_slit_mm2. Smaller
-/// places are unneeded as long as all of them together stay below speck_budget: most could be seen into from
-/// some pose, but hide no sign.
+/// What nothing will clear and hangs together over more than largest_slit_mm2 is unreachable where by the
+/// model no pose has a good look at it. Where one has, it stays red and is named (RedTarget::no_signal): ink,
+/// gloss or a deep hole, which a person tells apart. Smaller places are unneeded as long as all of them
+/// together stay below speck_budget: most could be seen into from some pose, but hide no sign.
 
 /// By pose limits: no pose that the rig allows is expected to sample the place. best_chance as in NextViews,
 /// over all candidates; entries below 0 were not judged and stay red.
@@ -68,15 +70,16 @@ void excuse_out_of_reach(std::span<const PlacedScan> scans, const SurfaceCover& 
                          RedTargets& red);
 
 /// By trial: at least `tries` scans, no two of them from one place (full_looks_apart()), ought to have seen
-/// the place by all that is known, and none brought dense samples. Applies to rig and replay alike.
+/// the place by all that is known, and none brought dense samples. What of it stays red is given up after
+/// twice as many. Applies to rig and replay alike.
 void excuse_tried(std::span<const PlacedScan> scans, const SurfaceCover& cover, double surface_mm2,
                   const ExcuseOptions& options, RedTargets& red);
 
 /// By trial, too: at least `tries` scans, from wherever, might have seen the place, with the chance of a full
 /// look together (looks_worth()), and after these looks in vain no candidate is expected to sample it any
-/// more. best_left as in NextViews; entries below 0 were not judged and stay red.
-void excuse_tried_out(std::span<const PlacedScan> scans, const SurfaceCover& cover,
-                      std::span<const float> best_left, double surface_mm2, const ExcuseOptions& options,
-                      RedTargets& red);
+/// more. Unreachable where none had a good look at it either. Of `views`, best_left and best_chance count;
+/// entries below 0 were not judged and stay red.
+void excuse_tried_out(std::span<const PlacedScan> scans, const SurfaceCover& cover, const NextViews& views,
+                      double surface_mm2, const ExcuseOptions& options, RedTargets& red);
 
 }  // namespace dubsar

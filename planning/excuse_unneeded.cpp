@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <optional>
 
 #include "core/number_text.h"
@@ -116,8 +117,6 @@ std::string describe(const Interpolation& fit, double good_to_mm) {
 
 void excuse_unneeded(std::span<const PlacedScan> scans, const SurfaceCover& cover, double noise_mm,
                      const ExcuseOptions& options, RedTargets& red) {
-  const double spacing_mm = coarsest_spacing_mm(scans);
-  const double margin_mm = std::max(options.fit_margin_mm, 4.5 * spacing_mm);
   for (const auto& group :
        cluster_targets(red, scans, 2.0 * red.cell_mm, 2.0 * options.largest_gap_mm, true)) {
     if (red.targets[group.front()].state != RegionState::kRed) {
@@ -130,6 +129,7 @@ void excuse_unneeded(std::span<const PlacedScan> scans, const SurfaceCover& cove
     if (box.diagonal().norm() > options.largest_gap_mm) {
       continue;
     }
+    const double margin_mm = std::max(options.fit_margin_mm, 4.5 * cover.spacing_mm_at(box.center()));
     const auto fit = interpolate(cover, red, group, noise_mm, margin_mm);
     if (!fit || fit->width_mm > options.largest_gap_mm) {
       continue;
@@ -159,7 +159,7 @@ struct Bridge {
 
 std::optional<Bridge> bridge(const SurfaceCover& cover, const RedTarget& target) {
   const Eigen::Vector3d& sample = target.sample_mm;
-  const double radius_mm = cover.reach_mm();
+  const double radius_mm = cover.reach_mm_at(sample);
   const auto around = cover.within(sample, radius_mm);
   const auto nearest = std::min_element(around.begin(), around.end(), [&](const auto& a, const auto& b) {
     return (a.position_mm.template cast<double>() - sample).squaredNorm() <
@@ -212,16 +212,24 @@ double area_of(std::span<const std::uint32_t> group, const RedTargets& red) {
   return area_mm2;
 }
 
-double largest_speck_mm2(std::span<const PlacedScan> scans, const ExcuseOptions& options) {
-  const double spacing_mm = coarsest_spacing_mm(scans);
+double largest_speck_mm2(double spacing_mm, const ExcuseOptions& options) {
   return options.speck_spacings2 * spacing_mm * spacing_mm;
+}
+
+/// Of the places of a group.
+double finest_spacing_mm(std::span<const std::uint32_t> group, const SurfaceCover& cover,
+                         const RedTargets& red) {
+  double finest_mm = std::numeric_limits<double>::infinity();
+  for (const std::uint32_t i : group) {
+    finest_mm = std::min(finest_mm, cover.spacing_mm_at(red.targets[i].position_mm));
+  }
+  return finest_mm;
 }
 
 }  // namespace
 
 void excuse_specks(std::span<const PlacedScan> scans, const SurfaceCover& cover, double surface_mm2,
                    const ExcuseOptions& options, RedTargets& red) {
-  const double largest_mm2 = largest_speck_mm2(scans, options);
   std::vector<std::vector<std::uint32_t>> untried;
   double all_mm2 = 0;
   for (auto& group : cluster_targets(red, scans, red.cell_mm, options.largest_gap_mm, true)) {
@@ -229,12 +237,13 @@ void excuse_specks(std::span<const PlacedScan> scans, const SurfaceCover& cover,
       continue;
     }
     Eigen::AlignedBox3d box;
-    std::size_t tried = full_looks(red.targets[group.front()].tried);
+    std::size_t tried = full_looks_apart(red.targets[group.front()].tried);
     for (const std::uint32_t t : group) {
       box.extend(red.targets[t].position_mm);
-      tried = std::min(tried, full_looks(red.targets[t].tried));
+      tried = std::min(tried, full_looks_apart(red.targets[t].tried));
     }
     const double area_mm2 = area_of(group, red);
+    const double largest_mm2 = largest_speck_mm2(finest_spacing_mm(group, cover, red), options);
     const bool speck = area_mm2 <= largest_mm2 && box.diagonal().norm() <= options.largest_gap_mm;
     if (speck && tried >= static_cast<std::size_t>(options.speck_tries)) {
       for (const std::uint32_t t : group) {
@@ -266,11 +275,13 @@ void excuse_specks(std::span<const PlacedScan> scans, const SurfaceCover& cover,
 
 namespace {
 
-/// Settles red targets that nothing will clear: those of large groups are unreachable; those of small ones
-/// are unneeded as long as all of them together stay below speck_budget, and stay red otherwise.
-template <class GivenUp>
+/// Settles red targets that nothing will clear: those of large groups are unreachable, or stay red and are
+/// named where they lie in the open; those of small ones are unneeded as long as all of them together stay
+/// below speck_budget, and stay red otherwise.
+template <class GivenUp, class InTheOpen>
 void give_up(std::span<const PlacedScan> scans, const SurfaceCover& cover, double surface_mm2,
-             const ExcuseOptions& options, const std::string& why, const GivenUp& given_up, RedTargets& red) {
+             const ExcuseOptions& options, const std::string& why, const GivenUp& given_up,
+             const InTheOpen& in_the_open, RedTargets& red) {
   std::vector<std::uint32_t> slits;
   for (const auto& group : cluster_targets(red, scans, red.cell_mm, kAcrossGapsMm, true)) {
     const bool slit = area_of(group, red) <= options.largest_slit_mm2;
@@ -280,6 +291,9 @@ void give_up(std::span<const PlacedScan> scans, const SurfaceCover& cover, doubl
       }
       if (slit) {
         slits.push_back(i);
+      } else if (in_the_open(i)) {
+        red.targets[i].no_signal = true;
+        red.targets[i].reason = "gives no signal, look at it: " + why;
       } else {
         red.targets[i].excuse_as(Excuse::kUnreachable, why);
       }
@@ -305,7 +319,7 @@ void excuse_out_of_reach(std::span<const PlacedScan> scans, const SurfaceCover& 
       [&](std::uint32_t i) {
         return best_chance[i] >= 0 && static_cast<double>(best_chance[i]) < options.least_chance;
       },
-      red);
+      [](std::uint32_t) { return false; }, red);
 }
 
 void excuse_tried(std::span<const PlacedScan> scans, const SurfaceCover& cover, double surface_mm2,
@@ -313,35 +327,40 @@ void excuse_tried(std::span<const PlacedScan> scans, const SurfaceCover& cover, 
   give_up(
       scans, cover, surface_mm2, options,
       std::to_string(options.tries) +
-          " scans looked at it and brought no dense samples: too deep, too dark or no surface",
+          " scans looked straight at it, each from elsewhere, and brought no dense samples: too dark, too "
+          "shiny, too deep "
+          "or no surface",
       [&](std::uint32_t i) {
         return full_looks_apart(red.targets[i].tried) >= static_cast<std::size_t>(options.tries);
       },
-      red);
+      [](std::uint32_t) { return true; }, red);
+  for (RedTarget& t : red.targets) {
+    t.given_up = t.no_signal && full_looks_apart(t.tried) >= 2 * static_cast<std::size_t>(options.tries);
+  }
 }
 
-void excuse_tried_out(std::span<const PlacedScan> scans, const SurfaceCover& cover,
-                      std::span<const float> best_left, double surface_mm2, const ExcuseOptions& options,
-                      RedTargets& red) {
+void excuse_tried_out(std::span<const PlacedScan> scans, const SurfaceCover& cover, const NextViews& views,
+                      double surface_mm2, const ExcuseOptions& options, RedTargets& red) {
   give_up(
       scans, cover, surface_mm2, options,
       std::to_string(options.tries) +
           " scans and more might have sampled it and did not, and no other pose promises to",
       [&](std::uint32_t i) {
-        return best_left[i] >= 0 && static_cast<double>(best_left[i]) < options.least_chance &&
+        return views.best_left[i] >= 0 && static_cast<double>(views.best_left[i]) < options.least_chance &&
                red.targets[i].tried.size() >= static_cast<std::size_t>(options.tries) &&
                looks_worth(red.targets[i].tried) >= 1.0;
       },
-      red);
+      [&](std::uint32_t i) { return static_cast<double>(views.best_chance[i]) > kTriedChance; }, red);
 }
 
 void excuse_last_specks(std::span<const PlacedScan> scans, const SurfaceCover& cover, double best_gain_mm2,
                         double surface_mm2, const ExcuseOptions& options, RedTargets& red) {
   double all_mm2 = 0;
   for (const RedTarget& t : red.targets) {
-    all_mm2 += t.state == RegionState::kRed ? t.area_mm2 : 0.0;
+    all_mm2 += t.state == RegionState::kRed && !t.no_signal ? t.area_mm2 : 0.0;
   }
-  if (all_mm2 > options.speck_budget * surface_mm2 || best_gain_mm2 > largest_speck_mm2(scans, options)) {
+  if (all_mm2 > options.speck_budget * surface_mm2 ||
+      best_gain_mm2 > largest_speck_mm2(cover.finest_spacing_mm(), options)) {
     return;
   }
   for (const auto& group : cluster_targets(red, scans, red.cell_mm, kAcrossGapsMm, true)) {

@@ -15,15 +15,24 @@ namespace dubsar {
 
 namespace {
 
-std::vector<std::vector<std::uint32_t>> connected(const std::vector<Rim>& rims, double reach_mm) {
-  PointCells cells(reach_mm);
+bool is_one_hole(const Rim& a, const Rim& b) {
+  const double reach_mm = std::max(a.reach_mm, b.reach_mm);
+  return (a.position_mm - b.position_mm).squaredNorm() <= reach_mm * reach_mm;
+}
+
+std::vector<std::vector<std::uint32_t>> connected(const std::vector<Rim>& rims) {
+  double widest_mm = 1e-9;
+  for (const Rim& rim : rims) {
+    widest_mm = std::max(widest_mm, rim.reach_mm);
+  }
+  PointCells cells(widest_mm);
   for (std::uint32_t i = 0; i < rims.size(); ++i) {
     cells.add(rims[i].position_mm, i);
   }
   UnionFind sets(rims.size());
   for (std::uint32_t i = 0; i < rims.size(); ++i) {
     cells.for_each_within(rims[i].position_mm, [&](std::uint32_t j) {
-      if (j > i) {
+      if (j > i && is_one_hole(rims[i], rims[j])) {
         sets.join(i, j);
       }
     });
@@ -69,9 +78,9 @@ Hole hole_of(const std::vector<Rim>& rims, std::span<const std::uint32_t> group)
 
 }  // namespace
 
-std::vector<Hole> holes_of(const std::vector<Rim>& rims, double reach_mm) {
+std::vector<Hole> holes_of(const std::vector<Rim>& rims) {
   std::vector<Hole> holes;
-  for (const auto& group : connected(rims, reach_mm)) {
+  for (const auto& group : connected(rims)) {
     holes.push_back(hole_of(rims, group));
   }
   return holes;

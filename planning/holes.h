@@ -14,6 +14,7 @@ struct Rim {
   Eigen::Vector3d normal{0, 0, 1};       ///< of the surface, out of the clay
   Eigen::Vector3d outward{1, 0, 0};      ///< along the surface, to where nothing is sampled; unit
   std::uint32_t part = 0;                ///< of the cover
+  double reach_mm = 0;                   ///< of the cover there
 };
 
 /// A connected rim.
@@ -23,7 +24,7 @@ struct Hole {
   double area_mm2 = 0;             ///< of the rim's polygon, seen along the direction in which it is flattest
 };
 
-/// Rims that lie within reach_mm of each other, directly or by others, are one hole's.
-[[nodiscard]] std::vector<Hole> holes_of(const std::vector<Rim>& rims, double reach_mm);
+/// Rims that lie within the reach of one of them from each other, directly or by others, are one hole's.
+[[nodiscard]] std::vector<Hole> holes_of(const std::vector<Rim>& rims);
 
 }  // namespace dubsar

@@ -213,7 +213,8 @@ ModelSurface model_surface(std::span<const PlacedScan> scans, const Mesh* model,
   std::vector<Eigen::Vector3d> extremes = hull_points(thinned);
   Mesh hull = convex_hull(extremes);
   out.faces = model_faces(scans, hull);
-  if (const auto mirrored = mirrored_points(out.mesh, hull, extremes, out.faces); !mirrored.empty()) {
+  if (const auto mirrored = mirrored_points(out.mesh, out.query, hull, extremes, out.faces);
+      !mirrored.empty()) {
     for (const Eigen::Vector3d& p : mirrored) {
       thinned.push_back(p.cast<float>());
     }

@@ -31,10 +31,14 @@ struct RedOnes {
   std::vector<std::size_t> others;
 };
 
+bool is_planned_for(const RedTarget& target) {
+  return target.state == RegionState::kRed && !target.given_up;
+}
+
 RedOnes thinned_red(std::span<const RedTarget> targets, std::size_t most) {
   RedOnes out;
   for (std::size_t i = 0; i < targets.size(); ++i) {
-    if (targets[i].state == RegionState::kRed) {
+    if (is_planned_for(targets[i])) {
       out.chosen.push_back(i);
     }
   }
@@ -147,7 +151,7 @@ Result<NextViews> next_views(std::span<const ViewCandidate> candidates, const Sc
   double all_area = 0;
   double kept_area = 0;
   for (const RedTarget& t : targets) {
-    all_area += t.state == RegionState::kRed ? t.area_mm2 : 0.0;
+    all_area += is_planned_for(t) ? t.area_mm2 : 0.0;
   }
   for (const std::size_t i : red) {
     kept_area += targets[i].area_mm2;

@@ -29,7 +29,7 @@ struct NextViews {
   std::vector<NextView> ranked;  ///< best first
   /// Greatest red area that any candidate is expected to clear, whether it is proposed or not.
   double best_gain_mm2 = 0;
-  std::vector<float> best_chance;  ///< [targets]; -1 for targets that are not red
+  std::vector<float> best_chance;  ///< [targets]; -1 for targets that are not red, or given up
   std::vector<float> best_left;    ///< the same, looks in vain considered
 };
 

@@ -90,7 +90,8 @@ Result<RedMapResult> make_red_map(std::span<const PlacedScan> scans, const Mesh*
   add_rim_targets(cover, options.targets.longest_gap_mm, apart, out.targets);
   excuse_unneeded(scans, cover, median_noise_mm, options.excuse, out.targets);
   // Strays and interpolated gaps are no border of a hole.
-  drop_unbordered_patches(scans, out.targets);
+  const bool is_closed = cover.size() > 0 && std::ranges::find(apart, 0) == apart.end();
+  drop_unbordered_patches(scans, is_closed, out.targets);
   double surface_mm2 = 0;
   for (const auto* patches : {&surface.seen, &surface.unseen}) {
     for (const SurfacePatch& patch : *patches) {
@@ -109,7 +110,7 @@ Result<RedMapResult> make_red_map(std::span<const PlacedScan> scans, const Mesh*
   if (rig != nullptr) {
     excuse_out_of_reach(scans, cover, views->best_chance, surface_mm2, options.excuse, out.targets);
   }
-  excuse_tried_out(scans, cover, views->best_left, surface_mm2, options.excuse, out.targets);
+  excuse_tried_out(scans, cover, *views, surface_mm2, options.excuse, out.targets);
   excuse_last_specks(scans, cover, views->best_gain_mm2, surface_mm2, options.excuse, out.targets);
   for (const RedSampleRef& ref : out.targets.samples) {
     if (out.targets.targets[ref.target].state == RegionState::kExcused) {

@@ -78,6 +78,20 @@ std::vector<std::vector<std::uint32_t>> parts_by_side(const RedTargets& red, std
   return out;
 }
 
+/// Why a red place stays red, where most of it gives no signal.
+std::string no_signal_of(const RedTargets& red, std::span<const std::uint32_t> group, double area_mm2) {
+  double silent_mm2 = 0;
+  const RedTarget* largest = nullptr;
+  for (const std::uint32_t i : group) {
+    const RedTarget& t = red.targets[i];
+    if (t.no_signal) {
+      silent_mm2 += t.area_mm2;
+      largest = largest == nullptr || t.area_mm2 > largest->area_mm2 ? &t : largest;
+    }
+  }
+  return largest != nullptr && silent_mm2 >= 0.5 * area_mm2 ? largest->reason : std::string();
+}
+
 RedRegion region_of(const RedTargets& red, std::span<const std::uint32_t> group,
                     const ModelSurface& surface) {
   RedRegion region;
@@ -112,6 +126,9 @@ RedRegion region_of(const RedTargets& red, std::span<const std::uint32_t> group,
   region.state = main.state;
   region.excuse = main.excuse;
   region.reason = main.reason;
+  if (main.state == RegionState::kRed) {
+    region.reason = no_signal_of(red, group, region.area_mm2);
+  }
   return region;
 }
 
@@ -125,7 +142,7 @@ std::vector<RedRegion> red_regions(const RedTargets& red, std::span<const Placed
   }
   std::vector<RedRegion> regions;
   for (const auto& group :
-       cluster_targets(red, scans, std::max(2.0 * red.cell_mm, 1.8 * patch_mm), kGridReachMm, true)) {
+       cluster_targets(red, scans, 2.0 * red.cell_mm, kGridReachMm, true, 1.8 * patch_mm)) {
     for (const auto& part : parts_by_side(red, group, surface)) {
       regions.push_back(region_of(red, part, surface));
     }

@@ -11,6 +11,7 @@
 #include "core/parallel.h"
 #include "planning/clearing.h"
 #include "planning/clusters.h"
+#include "planning/spacing_levels.h"
 #include "planning/sparse_flags.h"
 
 namespace dubsar {
@@ -25,6 +26,7 @@ struct Red {
   Eigen::Vector3d normal{0, 0, 0};  ///< weighted by area
   Eigen::Vector3d sample_mm{0, 0, 0};
   double area_mm2 = 0;
+  std::uint8_t level = 0;  ///< of its scan's spacing
   std::array<std::int32_t, 3> cell{};
 };
 
@@ -111,7 +113,8 @@ class GapReader {
   int reach_;
 };
 
-std::vector<Red> red_samples(std::span<const PlacedScan> scans, double longest_gap_mm) {
+std::vector<Red> red_samples(std::span<const PlacedScan> scans, const SpacingLevels& levels,
+                             double longest_gap_mm) {
   std::vector<Red> reds;
   for (std::uint32_t s = 0; s < scans.size(); ++s) {
     const RangeGrid& grid = *scans[s].grid;
@@ -120,6 +123,7 @@ std::vector<Red> red_samples(std::span<const PlacedScan> scans, double longest_g
       if (is_red((*scans[s].flags)[i]) && grid.valid[i] != 0 && grid.point(i).allFinite()) {
         Red red;
         red.scan = s;
+        red.level = levels.of_scan(s);
         red.sample = static_cast<std::uint32_t>(i);
         reds.push_back(red);
       }
@@ -142,20 +146,25 @@ std::vector<Red> red_samples(std::span<const PlacedScan> scans, double longest_g
   return reds;
 }
 
-/// Sorts the samples by cell of space; returns the number of cells.
-std::size_t sort_into_cells(std::vector<Red>& reds, double cell_mm) {
+bool share_cell(const Red& a, const Red& b) {
+  return a.level == b.level && a.cell == b.cell;
+}
+
+/// Sorts the samples by level and cell of space; returns the number of cells. cells_mm: by level.
+std::size_t sort_into_cells(std::vector<Red>& reds, std::span<const double> cells_mm) {
   for (Red& red : reds) {
+    const double cell_mm = cells_mm[red.level];
     for (int k = 0; k < 3; ++k) {
       red.cell[static_cast<std::size_t>(k)] =
           static_cast<std::int32_t>(std::clamp(std::floor(red.position_mm[k] / cell_mm), -1.0e9, 1.0e9));
     }
   }
   std::sort(reds.begin(), reds.end(), [](const Red& a, const Red& b) {
-    return std::tie(a.cell, a.scan, a.sample) < std::tie(b.cell, b.scan, b.sample);
+    return std::tie(a.level, a.cell, a.scan, a.sample) < std::tie(b.level, b.cell, b.scan, b.sample);
   });
   std::size_t cells = 0;
   for (std::size_t i = 0; i < reds.size(); ++i) {
-    cells += i == 0 || reds[i].cell != reds[i - 1].cell ? 1 : 0;
+    cells += i == 0 || !share_cell(reds[i], reds[i - 1]) ? 1 : 0;
   }
   return cells;
 }
@@ -184,21 +193,26 @@ RedTarget merged(std::span<const Red> reds) {
 RedTargets red_targets(std::span<const PlacedScan> scans, const ModelSurface& surface,
                        const RedTargetOptions& options) {
   RedTargets out;
-  const double spacing_mm = coarsest_spacing_mm(scans);
-  std::vector<Red> reds = red_samples(scans, options.longest_gap_mm);
-  out.cell_mm = std::max(options.cell_mm, 3.0 * spacing_mm);
-  while (sort_into_cells(reds, out.cell_mm) > options.max_targets) {
-    out.cell_mm *= 1.5;
+  const SpacingLevels levels(scans);
+  std::vector<Red> reds = red_samples(scans, levels, options.longest_gap_mm);
+  std::vector<double> cells_mm;
+  for (std::size_t level = 0; level < levels.size(); ++level) {
+    cells_mm.push_back(std::max(options.cell_mm, 3.0 * levels.spacing_mm(level)));
   }
+  while (sort_into_cells(reds, cells_mm) > options.max_targets) {
+    std::ranges::for_each(cells_mm, [](double& cell_mm) { cell_mm *= 1.5; });
+  }
+  out.cell_mm = cells_mm.back();
   for (std::size_t begin = 0; begin < reds.size();) {
     std::size_t end = begin + 1;
-    while (end < reds.size() && reds[end].cell == reds[begin].cell) {
+    while (end < reds.size() && share_cell(reds[end], reds[begin])) {
       ++end;
     }
     for (std::size_t i = begin; i < end; ++i) {
       out.samples.push_back({reds[i].scan, reds[i].sample, static_cast<std::uint32_t>(out.targets.size())});
     }
     out.targets.push_back(merged(std::span(reds).subspan(begin, end - begin)));
+    out.targets.back().cell_share = cells_mm[reds[begin].level] / out.cell_mm;
     begin = end;
   }
   for (const SurfacePatch& patch : surface.unseen) {
@@ -208,12 +222,13 @@ RedTargets red_targets(std::span<const PlacedScan> scans, const ModelSurface& su
     target.normal = patch.normal;
     target.area_mm2 = patch.area_mm2;
     target.unseen = true;
+    target.cell_share = cells_mm.front() / out.cell_mm;
     out.targets.push_back(std::move(target));
   }
   return out;
 }
 
-void drop_unbordered_patches(std::span<const PlacedScan> scans, RedTargets& red) {
+void drop_unbordered_patches(std::span<const PlacedScan> scans, bool is_closed, RedTargets& red) {
   constexpr double kLargestSlitMm2 = 10.0;
   constexpr double kLeastShareOfBorder = 0.25;
   double patch_mm = 0;
@@ -226,8 +241,7 @@ void drop_unbordered_patches(std::span<const PlacedScan> scans, RedTargets& red)
     ++samples[ref.target];
   }
   std::vector<std::uint8_t> drop(red.targets.size(), 0);
-  const double reach_mm = std::max(2.0 * red.cell_mm, 1.8 * patch_mm);
-  for (const auto& group : cluster_targets(red, scans, reach_mm, 0.0, true)) {
+  for (const auto& group : cluster_targets(red, scans, 2.0 * red.cell_mm, 0.0, true, 1.8 * patch_mm)) {
     double area = 0;
     std::size_t border = 0;
     for (const std::uint32_t i : group) {
@@ -235,7 +249,8 @@ void drop_unbordered_patches(std::span<const PlacedScan> scans, RedTargets& red)
       border += red.targets[i].rim ? 1 : samples[i];
     }
     const double perimeter = 4.0 * std::sqrt(area) / std::max(spacing_mm, 1e-9);
-    if (area > kLargestSlitMm2 || static_cast<double>(border) >= kLeastShareOfBorder * perimeter) {
+    const bool has_border = static_cast<double>(border) >= kLeastShareOfBorder * perimeter;
+    if (area > kLargestSlitMm2 ? !is_closed || border > 0 : has_border) {
       continue;
     }
     for (const std::uint32_t i : group) {

@@ -24,7 +24,12 @@ struct RedTarget {
   /// Mean of the red samples themselves; position_mm lies in the gap beside them.
   Eigen::Vector3d sample_mm{0, 0, 0};
   double area_mm2 = 0;
-  bool unseen = false;          ///< with no samples of its own: a patch of the closing surface, or a rim
+  /// Of RedTargets::cell_mm: how far around it things hang together, by the spacing of the scans there.
+  double cell_share = 1;
+  bool unseen = false;  ///< with no samples of its own: a patch of the closing surface, or a rim
+  /// Red, though scans enough looked straight at it in the open, each from elsewhere: a person has to look.
+  bool no_signal = false;
+  bool given_up = false;        ///< no further view is planned for it
   bool rim = false;             ///< where the well-sampled surface ends, and no red sample marks it
   std::vector<VainLook> tried;  ///< scans that might have seen it and did not
   RegionState state = RegionState::kRed;
@@ -55,11 +60,12 @@ struct RedSampleRef {
 struct RedTargets {
   std::vector<RedTarget> targets;
   std::vector<RedSampleRef> samples;  ///< by target, then scan, then sample
-  double cell_mm = 0;                 ///< edge of the cells that red samples were gathered in
+  /// Edge of the cells that red samples were gathered in: of the coarsest scan, the greatest.
+  double cell_mm = 0;
 };
 
 struct RedTargetOptions {
-  double cell_mm = 0.3;            ///< at least 3 µ; doubled until there are few enough targets
+  double cell_mm = 0.3;            ///< at least 3 µ of the scan; grown until there are few enough targets
   std::size_t max_targets = 4000;  ///< of red samples
   double longest_gap_mm =
       5.0;  ///< a gap counts for no more than this: beyond lies another part of the object
@@ -74,7 +80,8 @@ struct RedTargetOptions {
 
 /// Removes small groups of unseen patches (below 10 mm²) that have less than a quarter of the red samples
 /// which the border of such a hole would have: they lie over slits of the thinned surface. Larger ones always
-/// stay. Only red samples are a border, excused ones are not.
-void drop_unbordered_patches(std::span<const PlacedScan> scans, RedTargets& red);
+/// stay, unless what was sampled is a closed surface: then nothing is missing behind those that no red sample
+/// and no rim borders. Only red samples are a border, excused ones are not.
+void drop_unbordered_patches(std::span<const PlacedScan> scans, bool is_closed, RedTargets& red);
 
 }  // namespace dubsar

@@ -18,15 +18,14 @@ void settle_closed(std::span<const PlacedScan> scans, const SurfaceCover& cover,
   for (const RedSampleRef& ref : red.samples) {
     ++samples[ref.target];
   }
-  const double beside_mm = cover.cell_mm() + 3.0 * noise_mm;
   std::vector<SurfaceCover::Place> place(red.targets.size(), SurfaceCover::Place::kBare);
   parallel_for_each_index(
       red.targets.size(),
       [&](std::size_t i) {
         const RedTarget& t = red.targets[i];
-        place[i] = cover.at(t.sample_mm, beside_mm);
-        if (cover.at(t.position_mm, cover.reach_mm()) == SurfaceCover::Place::kRim ||
-            cover.at(t.sample_mm, cover.reach_mm()) == SurfaceCover::Place::kRim) {
+        place[i] = cover.at(t.sample_mm, cover.cell_mm_at(t.sample_mm) + 3.0 * noise_mm);
+        if (cover.at(t.position_mm, cover.reach_mm_at(t.position_mm)) == SurfaceCover::Place::kRim ||
+            cover.at(t.sample_mm, cover.reach_mm_at(t.sample_mm)) == SurfaceCover::Place::kRim) {
           place[i] = SurfaceCover::Place::kRim;
         }
       },
@@ -70,23 +69,30 @@ void add_rim_targets(const SurfaceCover& cover, double widest_hole_mm, std::span
       continue;
     }
     const Hole& hole = cover.holes()[h];
-    const double strip_mm2 = 0.5 * cover.cell_mm() * cover.reach_mm();
-    const double share_mm2 =
-        hole.width_mm > widest_hole_mm
-            ? strip_mm2
-            : std::max(0.25 * strip_mm2, hole.area_mm2 / static_cast<double>(hole.rim.size()));
     for (const std::uint32_t i : hole.rim) {
+      const double reach_mm = rims[i].reach_mm;
       bool known = false;
-      marked.for_each_within(rims[i].position_mm, [&](std::uint32_t) { known = true; });
+      marked.for_each_within(rims[i].position_mm, [&](std::uint32_t t) {
+        const auto is_near = [&](const Eigen::Vector3d& p) {
+          return (p - rims[i].position_mm).squaredNorm() <= 4.0 * reach_mm * reach_mm;
+        };
+        known = known || is_near(red.targets[t].position_mm) || is_near(red.targets[t].sample_mm);
+      });
       if (known) {
         continue;
       }
+      const double strip_mm2 = 0.5 * reach_mm / SurfaceCover::kReachInCells * reach_mm;
+      const double share_mm2 =
+          hole.width_mm > widest_hole_mm
+              ? strip_mm2
+              : std::max(0.25 * strip_mm2, hole.area_mm2 / static_cast<double>(hole.rim.size()));
       RedTarget target;
-      target.position_mm = rims[i].position_mm + 0.5 * cover.reach_mm() * rims[i].outward;
+      target.position_mm = rims[i].position_mm + 0.5 * reach_mm * rims[i].outward;
       target.sample_mm = rims[i].position_mm;
       // The surface goes on there, turning away.
       target.normal = (rims[i].normal + 0.7 * rims[i].outward).normalized();
       target.area_mm2 = share_mm2;
+      target.cell_share = reach_mm / cover.reach_mm();
       target.unseen = true;
       target.rim = true;
       red.targets.push_back(std::move(target));

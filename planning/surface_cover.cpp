@@ -4,8 +4,8 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <bit>
 #include <cmath>
+#include <limits>
 #include <ranges>
 
 #include "core/parallel.h"
@@ -64,41 +64,27 @@ constexpr std::array<EmptyRun, 1U << kSectors> empty_runs() {
 }
 constexpr std::array<EmptyRun, 1U << kSectors> kRunOfEmpty = empty_runs();
 
-/// The cells of space that have an element already (open addressing).
-class Occupied {
- public:
-  explicit Occupied(std::size_t most) : mask_(std::bit_ceil(2 * most + 16) - 1), keys_(mask_ + 1, 0) {}
-  /// False when the key was there.
-  bool insert(std::uint64_t key) {
-    ++key;  // 0 is empty
-    std::uint64_t h = key * 0x9E3779B97F4A7C15ULL;
-    for (std::size_t at = (h >> 20U) & mask_;; at = (at + 1) & mask_) {
-      if (keys_[at] == key) {
-        return false;
-      }
-      if (keys_[at] == 0) {
-        keys_[at] = key;
-        return true;
-      }
-    }
-  }
-
- private:
-  std::size_t mask_;
-  std::vector<std::uint64_t> keys_;
-};
-
 }  // namespace
 
-SurfaceCover::SurfaceCover(std::span<const PlacedScan> scans) {
-  const double spacing_mm = coarsest_spacing_mm(scans);
-  cell_mm_ = std::max(kLeastCellMm, kCellInSpacings * spacing_mm);
+SurfaceCover::SurfaceCover(std::span<const PlacedScan> scans) : levels_(scans) {
+  for (std::size_t level = 0; level < levels_.size(); ++level) {
+    cells_mm_.push_back(std::max(kLeastCellMm, kCellInSpacings * levels_.spacing_mm(level)));
+  }
   std::vector<std::vector<Element>> by_scan(scans.size());
   parallel_for_each_index(
-      scans.size(), [&](std::size_t s) { by_scan[s] = elements_of(scans[s], cell_mm_); }, 1);
+      scans.size(),
+      [&](std::size_t s) {
+        const std::uint8_t level = levels_.of_scan(s);
+        by_scan[s] = elements_of(scans[s], cells_mm_[level]);
+        for (Element& e : by_scan[s]) {
+          e.level = level;
+        }
+      },
+      1);
   thin(by_scan);
   sort_into_cells();
   part_cells();
+  note_coarse(scans);
   find_rims(scans);
 }
 
@@ -115,16 +101,24 @@ void SurfaceCover::thin(const std::vector<std::vector<Element>>& by_scan) {
     return;
   }
   low_ = box.min();
-  Occupied occupied(count);
-  const auto per_mm = static_cast<float>(1.0 / cell_mm_);
+  // Each level by itself: a fine element must not take the place of one that reaches farther.
+  std::vector<CellSet> occupied(1, CellSet(count));
+  for (std::size_t level = 1; level < levels_.size(); ++level) {
+    std::size_t of_level = 0;
+    for (std::size_t s = 0; s < by_scan.size(); ++s) {
+      of_level += levels_.of_scan(s) == level ? by_scan[s].size() : 0;
+    }
+    occupied.emplace_back(of_level);
+  }
   for (const auto& elements : by_scan) {
     for (const Element& e : elements) {
+      const auto per_mm = static_cast<float>(1.0 / cells_mm_[e.level]);
       std::uint64_t key = 0;
       for (int k = 0; k < 3; ++k) {
         const float at = std::clamp((e.position_mm[k] - low_[k]) * per_mm, 0.0F, 1048575.0F);
         key = (key << 20U) | static_cast<std::uint64_t>(at);
       }
-      if (occupied.insert(key)) {
+      if (occupied[e.level].insert(key)) {
         elements_.push_back(e);
       }
     }
@@ -249,8 +243,6 @@ void SurfaceCover::find_rims(std::span<const PlacedScan> scans) {
   const std::vector<std::uint8_t> suspect = suspect_cells(scans);
   is_rim_.assign(elements_.size(), kNoRim);
   std::vector<Eigen::Vector3f> outward(elements_.size());
-  const auto radius = static_cast<float>(reach_mm());
-  const auto nearest2 = static_cast<float>(std::pow(0.3 * cell_mm_, 2.0));
   parallel_for_each_index(
       elements_.size(),
       [&](std::size_t i) {
@@ -258,6 +250,8 @@ void SurfaceCover::find_rims(std::span<const PlacedScan> scans) {
         if (suspect[cell_index(here.position_mm)] == 0) {
           return;
         }
+        const auto radius = static_cast<float>(kReachInCells * cells_mm_[here.level]);
+        const auto nearest2 = static_cast<float>(std::pow(0.3 * cells_mm_[here.level], 2.0));
         const Eigen::Vector3f u = here.normal.unitOrthogonal();
         const Eigen::Vector3f v = here.normal.cross(u);
         unsigned seen = 0;
@@ -288,9 +282,9 @@ void SurfaceCover::find_rims(std::span<const PlacedScan> scans) {
 }
 
 void SurfaceCover::settle_small_rims(const std::vector<Eigen::Vector3f>& outward) {
-  const auto cell = static_cast<float>(cell_mm_);
   const auto rings_a_bare_disc = [&](std::size_t i) {
     const Element& here = elements_[i];
+    const float cell = cell_of(here);
     const Eigen::Vector3f middle = here.position_mm + kDiscMiddleInCells * cell * outward[i];
     const Eigen::Vector3f u = here.normal.unitOrthogonal();
     const Eigen::Vector3f v = here.normal.cross(u);
@@ -327,12 +321,17 @@ void SurfaceCover::keep_holes(const std::vector<Eigen::Vector3f>& outward) {
   for (std::uint32_t i = 0; i < elements_.size(); ++i) {
     if (is_rim_[i] == kRim) {
       rims.push_back({elements_[i].position_mm.cast<double>(), elements_[i].normal.cast<double>(),
-                      outward[i].cast<double>(), elements_[i].part});
+                      outward[i].cast<double>(), elements_[i].part,
+                      kReachInCells * cells_mm_[elements_[i].level]});
       element.push_back(i);
     }
   }
-  for (Hole& hole : holes_of(rims, reach_mm())) {
-    if (hole.width_mm < 0.5 * reach_mm() || hole.rim.size() < 3) {
+  for (Hole& hole : holes_of(rims)) {
+    double reach_mm = std::numeric_limits<double>::infinity();
+    for (const std::uint32_t i : hole.rim) {
+      reach_mm = std::min(reach_mm, rims[i].reach_mm);
+    }
+    if (hole.width_mm < 0.5 * reach_mm || hole.rim.size() < 3) {
       for (const std::uint32_t i : hole.rim) {
         is_rim_[element[i]] = kNoRim;
       }

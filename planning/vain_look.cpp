@@ -26,11 +26,6 @@ bool stand_apart(const VainLook& a, const VainLook& b) {
 
 }  // namespace
 
-std::size_t full_looks(std::span<const VainLook> looks) {
-  return static_cast<std::size_t>(
-      std::ranges::count_if(looks, [](const VainLook& look) { return look.chance > kTriedChance; }));
-}
-
 std::size_t full_looks_apart(std::span<const VainLook> looks) {
   std::vector<const VainLook*> counted;
   for (const VainLook& look : looks) {

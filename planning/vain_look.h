@@ -18,11 +18,8 @@ struct VainLook {
 /// A scan that predicts this chance ought to have seen the place.
 inline constexpr double kTriedChance = 0.5;
 
-/// How many of them ought to have seen it.
-[[nodiscard]] std::size_t full_looks(std::span<const VainLook> looks);
-
-/// How many of those saw it from elsewhere: laser or camera stood at least 15° from where it stood for each
-/// that is counted already. Who looks four times without moving has looked once.
+/// How many of them ought to have seen it, each from elsewhere: laser or camera stood at least 15° from where
+/// it stood for each that is counted already. Who looks four times without moving has looked once.
 [[nodiscard]] std::size_t full_looks_apart(std::span<const VainLook> looks);
 
 /// The looks in full ones: one of less chance counts as the part of kTriedChance that it has.

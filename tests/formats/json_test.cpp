@@ -182,6 +182,7 @@ RedMap sample_red_map() {
   red.center_mm = {1.0 / 3, -2, 3};
   red.normal = {0, 0.6, 0.8};
   red.area_mm2 = 12.5;
+  red.reason = "gives no signal";
   RedRegion excused = red;
   excused.state = RegionState::kExcused;
   excused.excuse = Excuse::kUnneeded;
@@ -205,6 +206,7 @@ TEST(RedMapJson, ReadsBack) {
   EXPECT_EQ(back->scans[1].samples, 50000000000);
   EXPECT_EQ(back->copies, map.copies);
   EXPECT_EQ(red_map_to_json(RedMap{}).find("copies"), std::string::npos);
+  EXPECT_EQ(back->regions[0].reason, map.regions[0].reason);
   EXPECT_EQ(back->regions[1].reason, map.regions[1].reason);
   EXPECT_EQ(back->regions[1].excuse, Excuse::kUnneeded);
   EXPECT_EQ(back->regions[0].excuse, Excuse::kNone);

@@ -48,7 +48,7 @@ double lowest(const std::vector<Eigen::Vector3d>& points) {
 
 std::vector<Eigen::Vector3d> mirrored(const Mesh& mesh) {
   const auto corners = hull_points(mesh.positions);
-  return mirrored_points(mesh, convex_hull(corners), corners, ModelFaces{});
+  return mirrored_points(mesh, MeshQuery(mesh), convex_hull(corners), corners, ModelFaces{});
 }
 
 TEST(Completion, ATabletSeenFromAboveGetsItsOtherHalf) {
@@ -62,6 +62,38 @@ TEST(Completion, SidesThatWereSeenTellWhereTheMiddleIs) {
 
 TEST(Completion, NothingIsAddedToWhatWasSeenFromBothEnds) {
   EXPECT_TRUE(mirrored(pebble_above(-5.99)).empty());
+}
+
+/// The side of a cone upon its base (radius 12 at z -10), up to z_mm, where it would come to a point at z 10.
+Mesh cone_up_to(double z_mm) {
+  constexpr std::uint32_t kRound = 60;
+  constexpr std::uint32_t kUp = 40;
+  Mesh mesh;
+  for (std::uint32_t i = 0; i <= kUp; ++i) {
+    for (std::uint32_t j = 0; j < kRound; ++j) {
+      const double z = -10 + (z_mm + 10) * i / kUp;
+      const double phi = 2 * kPi * j / kRound;
+      const double radius = 0.6 * (10 - z);
+      mesh.positions.emplace_back(static_cast<float>(radius * std::cos(phi)),
+                                  static_cast<float>(radius * std::sin(phi)), static_cast<float>(z));
+    }
+  }
+  mesh.positions.emplace_back(0.0F, 0.0F, -10.0F);
+  for (std::uint32_t j = 0; j < kRound; ++j) {
+    mesh.faces.push_back({(kUp + 1) * kRound, (j + 1) % kRound, j});
+    for (std::uint32_t i = 0; i < kUp; ++i) {
+      const std::uint32_t a = i * kRound + j;
+      const std::uint32_t b = i * kRound + (j + 1) % kRound;
+      mesh.faces.push_back({a, b, a + kRound});
+      mesh.faces.push_back({b, b + kRound, a + kRound});
+    }
+  }
+  return mesh;
+}
+
+TEST(Completion, AConeEndsAtItsTip) {
+  EXPECT_TRUE(mirrored(cone_up_to(9.9)).empty()) << "it would get another base in the air";
+  EXPECT_FALSE(mirrored(cone_up_to(-2)).empty()) << "what is above was not seen";
 }
 
 }  // namespace

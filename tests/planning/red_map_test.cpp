@@ -283,6 +283,28 @@ TEST(RedMap, ALastSpeckIsNoLargerThanHalfAWedge) {
   EXPECT_EQ(red.targets[1].state, RegionState::kRed);
 }
 
+TEST(RedMap, BehindAClosedSurfaceNothingIsMissing) {
+  const auto left = [](bool is_closed, bool has_rim) {
+    RedTargets red;
+    red.cell_mm = 0.3;
+    for (int i = 0; i < 20; ++i) {
+      RedTarget& target = red.targets.emplace_back();
+      target.position_mm = {1.0 * i, 0, 20};
+      target.area_mm2 = 1.0;
+      target.unseen = true;
+    }
+    if (has_rim) {
+      red.targets.push_back(red.targets.front());
+      red.targets.back().rim = true;
+    }
+    drop_unbordered_patches({}, is_closed, red);
+    return red.targets.size();
+  };
+  EXPECT_EQ(left(true, false), 0U);
+  EXPECT_EQ(left(false, false), 20U);
+  EXPECT_EQ(left(true, true), 21U);
+}
+
 TEST(RedMap, CancelledWorkSaysSo) {
   Session session;
   session.scan(turned(0, 0));

@@ -9,9 +9,11 @@
 #include <functional>
 #include <memory>
 #include <numeric>
+#include <span>
 #include <vector>
 
 #include "planning/cleared_map.h"
+#include "planning/red_map.h"
 #include "planning/rim_targets.h"
 #include "planning/sparse_flags.h"
 
@@ -23,13 +25,15 @@ constexpr double kSpacingMm = 0.1;
 /// A plane of 12 mm, with samples where `there` says so (x, y in mm, from the middle); shifted by a part of
 /// µ.
 struct Plate {
-  Plate(const std::function<bool(double, double)>& there, double shift_mm) {
-    grid.allocate(120, 120);
-    grid.spacing_mm = kSpacingMm;
+  Plate(const std::function<bool(double, double)>& there, double shift_mm, double spacing_mm = kSpacingMm) {
+    const int across = static_cast<int>(std::lround(12.0 / spacing_mm));
+    const double middle = 0.5 * (across - 1);
+    grid.allocate(across, across);
+    grid.spacing_mm = spacing_mm;
     for (int r = 0; r < grid.rows; ++r) {
       for (int c = 0; c < grid.cols; ++c) {
-        const double x = (c - 59.5) * kSpacingMm + shift_mm;
-        const double y = (r - 59.5) * kSpacingMm + shift_mm;
+        const double x = (c - middle) * spacing_mm + shift_mm;
+        const double y = (r - middle) * spacing_mm + shift_mm;
         const std::size_t i = grid.index(r, c);
         grid.x[i] = static_cast<float>(x);
         grid.y[i] = static_cast<float>(y);
@@ -182,6 +186,42 @@ TEST(SurfaceCover, HolesAreTheSameBesideSomethingFarAway) {
     return std::ranges::count_if(cover.rims(), [](const Rim& rim) { return rim.position_mm.norm() < 50; });
   };
   EXPECT_EQ(rims_of(SurfaceCover(both)), rims_of(SurfaceCover(alone)));
+}
+
+TEST(SurfaceCover, ACoarseScanLetsGapsPassWhereItLookedAndNowhereElse) {
+  const auto outside_both = [](double x, double y) {
+    return outside_disc(x - 3, y, 0.45) && outside_disc(x + 3, y, 0.45);
+  };
+  const Plate one(outside_both, 0);
+  const Plate other(outside_both, 0.05);
+  const Plate coarse([](double x, double) { return x > 0; }, 0, 0.4);
+  ClearedMap map(ClearingOptions{});
+  map.add(one.placed(0));
+  map.add(other.placed(1));
+  map.add(coarse.placed(2));
+  const auto scans = map.scans();
+  const SurfaceCover cover(scans);
+  EXPECT_EQ(cover.spacing_mm_at({-3, 0, 0}), kSpacingMm);
+  EXPECT_EQ(cover.spacing_mm_at({3, 0, 0}), 0.4);
+  const auto holes = inner_holes(cover);
+  ASSERT_EQ(holes.size(), 1U);
+  EXPECT_LT(cover.rims()[holes[0].rim.front()].position_mm.x(), 0);
+
+  // The verdict of that place is the one that the fine scans give alone.
+  const auto red_at_hole = [](std::span<const PlacedScan> of, double x) {
+    JobContext job;
+    const auto result = make_red_map(of, nullptr, nullptr, {}, job);
+    double red_mm2 = 0;
+    for (const RedTarget& t : result->targets.targets) {
+      const double away_mm = (t.position_mm - Eigen::Vector3d(x, 0, 0)).norm();
+      red_mm2 += t.state == RegionState::kRed && away_mm < 1.0 ? t.area_mm2 : 0.0;
+    }
+    return red_mm2;
+  };
+  const std::span<const PlacedScan> fine = std::span(scans).first(2);
+  EXPECT_GT(red_at_hole(fine, -3), 0.1);
+  EXPECT_NEAR(red_at_hole(scans, -3), red_at_hole(fine, -3), 0.05);
+  EXPECT_EQ(red_at_hole(scans, 3), 0.0);
 }
 
 TEST(SurfaceCover, PartsAreWhatHangsTogether) {

@@ -6,6 +6,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <utility>
+
 #include "core/units.h"
 #include "planning/excuse.h"
 #include "planning/next_view.h"
@@ -30,7 +33,6 @@ VainLook look_from(double about_x_deg, double roll_deg, double chance = 0.9) {
 
 TEST(VainLook, WhoDoesNotMoveHasLookedOnce) {
   std::vector<VainLook> looks(4, look_from(0, 0));
-  EXPECT_EQ(full_looks(looks), 4U);
   EXPECT_EQ(full_looks_apart(looks), 1U);
   looks.push_back(look_from(10, 0));
   EXPECT_EQ(full_looks_apart(looks), 1U) << "nearly the same shadows";
@@ -62,7 +64,7 @@ double pit_of(const RedMapResult& result, RegionState state, Excuse excuse) {
   return area_mm2;
 }
 
-TEST(VainLook, APitIsGivenUpOnceItWasLookedAtFromFourSides) {
+TEST(VainLook, WhatLiesInTheOpenAndGivesNoSignalStaysRedAndIsNamed) {
   JobContext job;
   const Rig rig = turntable_rig();
   const auto mapped = [&](std::initializer_list<double> about_x_deg) {
@@ -77,8 +79,60 @@ TEST(VainLook, APitIsGivenUpOnceItWasLookedAtFromFourSides) {
   EXPECT_GT(pit_of(unmoved, RegionState::kRed, Excuse::kNone), 10.0);
   EXPECT_EQ(pit_of(unmoved, RegionState::kExcused, Excuse::kUnreachable), 0.0);
   const RedMapResult moved = mapped({0, 20, -20, 40, -40});
-  EXPECT_LT(pit_of(moved, RegionState::kRed, Excuse::kNone), 1.0);
-  EXPECT_GT(pit_of(moved, RegionState::kExcused, Excuse::kUnreachable), 10.0);
+  EXPECT_GT(pit_of(moved, RegionState::kRed, Excuse::kNone), 10.0);
+  EXPECT_EQ(pit_of(moved, RegionState::kExcused, Excuse::kUnreachable), 0.0);
+  EXPECT_FALSE(moved.map.conclusive);
+  const auto is_named = [](const RedRegion& region) {
+    return region.state == RegionState::kRed && region.center_mm.head<2>().norm() < 3 &&
+           region.reason.starts_with("gives no signal");
+  };
+  EXPECT_EQ(std::ranges::count_if(moved.map.regions, is_named), 1);
+  EXPECT_EQ(std::ranges::count_if(unmoved.map.regions, is_named), 0);
+}
+
+TEST(VainLook, NoViewIsPlannedForWhatGaveNoSignalEightTimes) {
+  Session session;
+  session.scan(turned(0, 0));
+  const SurfaceCover cover(session.map.scans());
+  RedTargets red;
+  RedTarget& target = red.targets.emplace_back();
+  target.position_mm = target.sample_mm = {0, 0, 5};
+  target.area_mm2 = 4;
+  std::vector<ViewCandidate> candidates(1);
+  JobContext job;
+  const auto ranked = [&](int looks) {
+    target.tried.clear();
+    for (int k = 0; k < looks; ++k) {
+      target.tried.push_back(look_from(20.0 * (k % 4), k < 4 ? 0 : 90));
+    }
+    excuse_tried(session.map.scans(), cover, 500.0, {}, red);
+    return next_views(candidates, ScannerModel::of(*session.grids.front(), 0.02),
+                      model_surface(session.map.scans()), red.targets, {}, job)
+        .value()
+        .ranked.size();
+  };
+  EXPECT_EQ(ranked(4), 1U);
+  EXPECT_TRUE(target.no_signal);
+  EXPECT_EQ(ranked(8), 0U);
+  EXPECT_EQ(target.state, RegionState::kRed);
+}
+
+TEST(VainLook, ASpeckIsSettledByLooksFromTwoPlaces) {
+  Session session;
+  session.scan(turned(0, 0));
+  const SurfaceCover cover(session.map.scans());
+  const auto state_after = [&](std::vector<VainLook> looks) {
+    RedTargets red;
+    red.cell_mm = 0.75;
+    RedTarget& target = red.targets.emplace_back();
+    target.position_mm = target.sample_mm = {0, 0, 5};
+    target.area_mm2 = 0.3;
+    target.tried = std::move(looks);
+    excuse_specks(session.map.scans(), cover, 500.0, {}, red);
+    return red.targets.front().state;
+  };
+  EXPECT_EQ(state_after(std::vector<VainLook>(3, look_from(0, 0))), RegionState::kRed);
+  EXPECT_EQ(state_after({look_from(0, 0), look_from(30, 0)}), RegionState::kExcused);
 }
 
 /// One place that faces up, and the only pose from which it can be looked at, at a slope of 69°.
@@ -112,7 +166,7 @@ TEST(VainLook, AfterLooksOfSomeChanceNoPosePromisesAnyMore) {
   ASSERT_LT(plain, kTriedChance);
   const SurfaceCover cover(one.session.map.scans());
   const auto excuse = [&] {
-    excuse_tried_out(one.session.map.scans(), cover, one.views().best_left, 500.0, {}, one.red);
+    excuse_tried_out(one.session.map.scans(), cover, one.views(), 500.0, {}, one.red);
     return one.red.targets.front().excuse;
   };
   RedTarget& target = one.red.targets.front();
