@@ -18,6 +18,7 @@
 #include "station/plan_again.h"
 #include "station/results.h"
 #include "station/session_drives.h"
+#include "station/session_faults.h"
 #include "station/session_pins.h"
 #include "station/told_session.h"
 #include "station/unfinished_scan.h"
@@ -159,6 +160,7 @@ void LiveSession::show_scans(const SessionStore& store, const std::vector<Stored
     scan.note = stored.note;
     scan.remark = stored.remark;
   }
+  show_faults(store, scans);
   if (const Result<OperatorLog> log = read_operator_log(store)) {
     for (LiveScan& scan : state_.scans) {
       scan.hinted = log->word.hints.contains(scan.id);
@@ -181,11 +183,30 @@ void LiveSession::show_verdict(const SessionStore& store) {
   }
   const auto signed_offs = read_sign_offs(store, *job_);
   if (signed_offs && !signed_offs->sign_offs.empty()) {
-    const CheckedSignOff& latest = signed_offs->sign_offs.back();
     const std::scoped_lock lock(mutex_);
-    state_.signed_off = latest.holds();
-    state_.signed_by = latest.holds() ? latest.sign_off.name : std::string();
+    show_signature(signed_offs->sign_offs.back());
   }
+}
+
+void LiveSession::show_faults(const SessionStore& store, const std::vector<StoredScan>& scans) {
+  state_.lost_records = lost_records(store);
+  for (const StoredScan& stored : scans) {
+    LiveScan& scan = scan_of(stored.id);
+    scan.damaged = stored.damaged;
+    scan.fault = damage_of(store, stored);
+    scan.record_lost = may_have_been_taken_out(stored);
+    if (scan.remark.empty()) {
+      scan.remark = stored.remark;
+    }
+  }
+}
+
+void LiveSession::show_signature(const CheckedSignOff& latest) {
+  const bool holds = latest.holds();
+  state_.signed_off = holds;
+  state_.signed_by = holds ? latest.sign_off.name : std::string();
+  state_.void_signed_by = holds ? std::string() : latest.sign_off.name;
+  state_.void_since = holds ? std::string() : latest.changed.front();
 }
 
 bool LiveSession::show_stored_model(const SessionStore& store, const std::vector<ScanPose>& poses) {

@@ -316,6 +316,7 @@ void LiveSession::sign(const SignOff& wanted) {
     state_.checklist = signing->checklist;
     state_.signed_off = true;
     state_.signed_by = signing->made->name;
+    state_.void_signed_by.clear();
     if (signing->no_pages) {
       state_.notice = signing->no_pages->line();
     }
@@ -383,8 +384,12 @@ void LiveSession::run_engine(std::vector<OperatorCommand> first, bool first_scan
   // What was set while it ran is in the session.
   const Result<SessionStore> store = SessionStore::open(options_.session, SessionStore::Access::kReadOnly);
   Result<SettingWords> kept = store ? kept_settings(*store, uri) : std::unexpected(store.error());
+  const auto scans = store ? store->scans() : std::unexpected(store.error());
   {
     const std::scoped_lock lock(mutex_);
+    if (scans) {
+      show_faults(*store, *scans);
+    }
     if (kept) {
       settings_ = std::move(*kept);
     }
@@ -400,9 +405,9 @@ void LiveSession::run_engine(std::vector<OperatorCommand> first, bool first_scan
       state_.verdict_kept = true;
       state_.checklist = result->checklist;
       state_.error = result->device_error;
-      const auto& signed_off = result->checklist.sign_off;
-      state_.signed_off = signed_off && signed_off->holds();
-      state_.signed_by = state_.signed_off ? signed_off->sign_off.name : std::string();
+      if (const auto& signed_off = result->checklist.sign_off) {
+        show_signature(*signed_off);
+      }
     }
   }
   if (!result) {

@@ -102,6 +102,9 @@ class LiveSession {
   void verdict_after_break(const SessionStore& store);
   void show_scans(const SessionStore& store, const std::vector<StoredScan>& scans);  ///< under the mutex
   void show_verdict(const SessionStore& store);                                      ///< and who signed it
+  /// What of the session is lost, and of its scans damaged; under the mutex. Told on every opening.
+  void show_faults(const SessionStore& store, const std::vector<StoredScan>& scans);
+  void show_signature(const CheckedSignOff& latest);  ///< under the mutex
   /// False where it is of other poses, or there is none.
   [[nodiscard]] bool show_stored_model(const SessionStore& store, const std::vector<ScanPose>& poses);
   void judge();

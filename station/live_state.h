@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -51,9 +52,11 @@ struct LiveScan {
   bool dropped = false;
   bool set_aside = false;  ///< by the run that goes on: something was in its way
   bool damaged = false;
-  bool hinted = false;  ///< the operator has said where it lies
-  std::string note;     ///< why it was dropped
-  std::string remark;   ///< of the device that it came from
+  bool hinted = false;       ///< the operator has said where it lies
+  std::string note;          ///< why it was dropped
+  std::string remark;        ///< of the device that it came from
+  std::string fault;         ///< what its damage is; empty where it has none
+  bool record_lost = false;  ///< it stands, and may have been taken out
   std::shared_ptr<const RangeGrid> grid;
   std::shared_ptr<const GridPicture> picture;
   /// Likewise, with the pins that stand in it; the same as `grid` where there are none.
@@ -90,10 +93,13 @@ struct LiveState {
   std::optional<Checklist> checklist;
   bool signed_off = false;  ///< the verdict as it stands
   std::string signed_by;
-  std::filesystem::path package;  ///< of the session as it stands, made or found here; empty: none
-  std::optional<Error> error;     ///< what ended the last run or job
-  bool halted = false;            ///< the emergency stop was pressed in the run or job that goes on
-  std::string notice;             ///< what the operator should know; empty when a later scan has made it old
+  std::string void_signed_by;          ///< the last signature, where it no longer holds; else empty
+  std::string void_since;              ///< what changed first since then
+  std::set<std::string> lost_records;  ///< kinds, in words (session_faults.h); empty: none
+  std::filesystem::path package;       ///< of the session as it stands, made or found here; empty: none
+  std::optional<Error> error;          ///< what ended the last run or job
+  bool halted = false;                 ///< the emergency stop was pressed in the run or job that goes on
+  std::string notice;  ///< what the operator should know; empty when a later scan has made it old
   TabletRecord record;
   /// Else the session could not be written to when `record` was said.
   bool record_kept = true;

@@ -8,8 +8,10 @@
 
 #include "acquisition/session_presence.h"
 #include "acquisition/sign_off_log.h"
+#include "core/log.h"
 #include "station/followed_word.h"
 #include "station/plan_again.h"
+#include "station/session_faults.h"
 
 namespace dubsar {
 
@@ -107,6 +109,9 @@ Result<Signing> sign_verdict(const std::filesystem::path& session, SignOff wante
     return std::unexpected(made.error());
   }
   out.made = *made;
+  if (const std::set<std::string> lost = lost_records(store); !lost.empty()) {
+    log_warning("the session has lost records: " + one_line(lost));
+  }
   // The pages show it; should they fail to be written, it still stands.
   results.checklist.sign_off = CheckedSignOff{*made, {}};
   out.checklist = results.checklist;

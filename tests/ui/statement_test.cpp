@@ -366,6 +366,71 @@ TEST(Statement, NothingIsTakenOutWhileAScanComesIn) {
 }
 
 /// What *Undo* asks for is what was seen, whatever has come since.
+TEST(Statement, LostRecordsAreToldBeforeAndAfterTheSignature) {
+  LiveState state = with_scan(PoseStatus::kRegistered);
+  state.red_map = map_with(0);
+  EXPECT_EQ(statement_of(state, true, Language::kEnglish).tone, Tone::kGood);
+  state.lost_records = {"the description of the tablet"};
+  const Statement before = statement_of(state, true, Language::kEnglish);
+  EXPECT_EQ(before.tone, Tone::kWarn);
+  EXPECT_EQ(before.headline, "Conclusive, but records are lost: check, then sign");
+  EXPECT_THAT(before.detail, HasSubstr("has lost records: the description of the tablet. Bring them back"));
+  EXPECT_TRUE(before.may_sign);
+  state.signed_off = true;
+  state.signed_by = "A. Reader";
+  const Statement after = statement_of(state, true, Language::kGerman);
+  EXPECT_EQ(after.tone, Tone::kWarn);
+  EXPECT_THAT(after.headline, HasSubstr("A. Reader"));
+  EXPECT_THAT(after.detail, HasSubstr("fehlen Aufzeichnungen: die Beschreibung der Tafel."));
+}
+
+TEST(Statement, ScansThatMayHaveBeenTakenOutAreNamed) {
+  LiveState state = with_scan(PoseStatus::kRegistered);
+  state.red_map = map_with(14);
+  state.scans.back().record_lost = true;
+  Statement s = statement_of(state, true, Language::kEnglish);
+  EXPECT_EQ(s.headline, "Records of this session are lost");
+  EXPECT_THAT(s.detail, HasSubstr("may have been taken out: 4."));
+  EXPECT_THAT(s.detail, HasSubstr("14.0 mm² are still red: scan on.")) << "it is still what is next";
+  state.scans.back().dropped = true;  // said anew
+  s = statement_of(state, true, Language::kEnglish);
+  EXPECT_EQ(s.tone, Tone::kAsk);
+}
+
+TEST(Statement, DamagedScansComeBeforeWhatIsRedByTheLackOfThem) {
+  LiveState state = with_scan(PoseStatus::kRegistered);
+  state.red_map = map_with(3.4);
+  state.scans.back().damaged = true;
+  Statement s = statement_of(state, true, Language::kEnglish);
+  EXPECT_EQ(s.headline, "Scan 4 is damaged: bring it back from a copy");
+  EXPECT_EQ(s.tone, Tone::kBad);
+  state.scans.push_back(state.scans.front());
+  state.scans.back().id = 6;
+  state.void_signed_by = "A. Reader";
+  state.void_since = "grids/004.grid: missing; bring it back from a copy";
+  s = statement_of(state, true, Language::kEnglish);
+  EXPECT_EQ(s.headline, "Scans 4, 6 are damaged: bring them back from a copy");
+  EXPECT_THAT(s.detail, HasSubstr("The signature of A. Reader no longer holds."));
+  EXPECT_THAT(s.detail, HasSubstr("see the guide"));
+  EXPECT_THAT(s.detail, ::testing::Not(HasSubstr("dubsar")));
+  state.error = Error{ErrorKind::kDevice, "the cable is out", "", "plug it in"};
+  s = statement_of(state, true, Language::kEnglish);
+  EXPECT_THAT(s.headline, HasSubstr("Stopped"));
+  EXPECT_THAT(s.detail, HasSubstr("Scans 4, 6 are damaged"));
+  state.scans.front().dropped = state.scans.back().dropped = true;
+  state.error.reset();
+  EXPECT_NE(statement_of(state, true, Language::kEnglish).tone, Tone::kBad) << "it was said";
+}
+
+TEST(Statement, AVoidSignatureIsToldWithWhatChanged) {
+  LiveState state = with_scan(PoseStatus::kRegistered);
+  state.red_map = map_with(0);
+  state.void_signed_by = "A. Reader";
+  state.void_since = "scan 7 has come since";
+  const Statement s = statement_of(state, true, Language::kEnglish);
+  EXPECT_THAT(s.detail, HasSubstr("The signature of A. Reader no longer holds: scan 7 has come since."));
+}
+
 TEST(Statement, UndoIsOfTheNewestThatStands) {
   LiveState state = with_scan(PoseStatus::kRegistered);
   state.scans.push_back(state.scans.back());

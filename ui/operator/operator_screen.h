@@ -69,6 +69,7 @@ class OperatorScreen {
   [[nodiscard]] FaceState face_state(const UiContext& ui, Face face) const;
   void draw_face(UiContext& ui, Face which, const FaceState& face, Text name);
   void draw_faces(UiContext& ui);
+  void draw_session_line(UiContext& ui);
   void draw_left(UiContext& ui, ImVec2 size);
   void draw_model(UiContext& ui, ImVec2 size, bool asks_for_places);
   void draw_halt(UiContext& ui, ImVec2 model_end);

@@ -50,13 +50,19 @@ Eigen::Vector4f state_colour(const UiContext& ui, Text state) {
   }
 }
 
+/// It stands, and may have been taken out.
+bool is_of_loss(const LiveScan& scan) {
+  return scan.record_lost && !scan.dropped && !scan.damaged;
+}
+
 std::string words_under(const UiContext& ui, const LiveState& state, const LiveScan& scan) {
   const bool is_warned = !scan_warning(scan, ui.preferences.language).empty();
   const std::optional<int> first = copy_of(state, scan);
-  std::string words =
-      fmt::format("{}  {}", scan.id,
-                  first ? filled(ui.text(Text::kCopyOf), *first)
-                        : std::string(ui.text(is_warned ? Text::kLengthsOff : state_text(state, scan))));
+  const Text says = is_warned          ? Text::kLengthsOff
+                    : is_of_loss(scan) ? Text::kRecordLost
+                                       : state_text(state, scan);
+  std::string words = fmt::format(
+      "{}  {}", scan.id, first ? filled(ui.text(Text::kCopyOf), *first) : std::string(ui.text(says)));
   if (scan.pose && scan.pose->locked) {
     words += fmt::format(", {}", ui.text(Text::kLocked));
   }
@@ -95,7 +101,7 @@ void OperatorScreen::draw_strip(UiContext& ui, ImVec2 size) {
     if (state_.pins && state_.pins->tips.contains(scan.id)) {
       ui.facts.insert(fmt::format("scan.{}.pins.{}", scan.id, state_.pins->tips.at(scan.id).size()));
     }
-    const bool is_warned = !scan_warning(scan, ui.preferences.language).empty();
+    const bool is_warned = !scan_warning(scan, ui.preferences.language).empty() || is_of_loss(scan);
     const Eigen::Vector4f colour = is_warned ? ui.colours.amber : state_colour(ui, state);
     draw->AddRectFilled(origin, end, packed(ui.colours.text, ImGui::IsItemHovered() ? 0.14F : 0.07F), 5);
     if (scan.picture) {
@@ -118,6 +124,9 @@ void OperatorScreen::draw_strip(UiContext& ui, ImVec2 size) {
     }
     draw->AddRect(origin, end, packed(colour), 5, 0,
                   state == Text::kUnsure || state == Text::kFailed || is_warned ? 3.0F : 1.5F);
+    if (is_of_loss(scan)) {
+      ui.facts.insert(fmt::format("scan.{}.records-lost", scan.id));
+    }
     if (scan.pose && scan.pose->locked) {
       ui.facts.insert("scan." + std::to_string(scan.id) + ".locked");
     }
@@ -166,6 +175,14 @@ void OperatorScreen::draw_scan_menu(UiContext& ui, const LiveScan& scan) {
   if (!scan.remark.empty()) {
     ImGui::PushTextWrapPos(ui.px(22));
     coloured_text(ui.colours.amber, translated(scan.remark, ui.preferences.language).c_str());
+    ImGui::PopTextWrapPos();
+  }
+  if (scan.damaged) {
+    ImGui::PushTextWrapPos(ui.px(22));
+    if (!scan.fault.empty()) {
+      coloured_text(ui.colours.bad, (translated(scan.fault, ui.preferences.language) + ".").c_str());
+    }
+    ImGui::TextUnformatted(ui.text(Text::kDamagedHow));
     ImGui::PopTextWrapPos();
   }
   if (const std::optional<int> first = copy_of(state_, scan)) {

@@ -119,6 +119,31 @@ void OperatorScreen::draw_faces(UiContext& ui) {
   }
 }
 
+/// "Session whole". The stored checklist knows how it was; damage and loss since then are worse.
+void OperatorScreen::draw_session_line(UiContext& ui) {
+  const std::string damaged = damaged_scans(state_);
+  const bool is_lost = !state_.lost_records.empty() || !scans_of_lost_records(state_).empty();
+  if (!state_.checklist && damaged.empty() && !is_lost) {
+    return;
+  }
+  ImGui::Separator();
+  ImGui::PushFont(ui.fonts.small);
+  ImGui::TextUnformatted(ui.text(Text::kStore));
+  ImGui::SameLine();
+  if (!damaged.empty()) {
+    coloured_text(ui.colours.bad, filled(ui.text(Text::kStoreScansDamaged), damaged).c_str());
+  } else if (is_lost) {
+    coloured_text(ui.colours.amber, ui.text(Text::kStoreLost));
+  } else {
+    coloured_text(state_.checklist->store_whole ? ui.colours.good : ui.colours.bad,
+                  ui.text(state_.checklist->store_whole ? Text::kStoreWhole : Text::kStoreDamaged));
+    if (state_.checklist->store_whole) {
+      ui.facts.insert("session-whole");
+    }
+  }
+  ImGui::PopFont();
+}
+
 void OperatorScreen::draw_left(UiContext& ui, ImVec2 size) {
   ImGui::BeginChild("left", size, true, ImGuiWindowFlags_NoScrollbar | ImGuiWindowFlags_NoScrollWithMouse);
   // The buttons below are wanted without scrolling, whatever the size of the letters.
@@ -139,14 +164,10 @@ void OperatorScreen::draw_left(UiContext& ui, ImVec2 size) {
       ImGui::PopFont();
     }
   }
+  draw_session_line(ui);
   if (state_.checklist) {
     const Checklist& list = *state_.checklist;
-    ImGui::Separator();
     ImGui::PushFont(ui.fonts.small);
-    ImGui::TextUnformatted(ui.text(Text::kStore));
-    ImGui::SameLine();
-    coloured_text(list.store_whole ? ui.colours.good : ui.colours.bad,
-                  ui.text(list.store_whole ? Text::kStoreWhole : Text::kStoreDamaged));
     ImGui::TextUnformatted(filled(ui.text(Text::kDiskFree), list.disk_free_gib).c_str());
     ImGui::TextUnformatted(ui.text(Text::kCalibration));
     coloured_text(ui.colours.faint, list.calibration_age_days

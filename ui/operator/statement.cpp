@@ -6,6 +6,7 @@
 #include <cctype>
 
 #include "archive/seen_line.h"
+#include "station/session_faults.h"
 #include "ui/shell/widgets.h"
 
 namespace dubsar::ui {
@@ -40,6 +41,67 @@ bool add_warnings(Statement& out, const LiveState& state, Language language) {
     add_sentence(out.detail, filled(text_of(Text::kMoreLengthsOff, language), warned - 1));
   }
   return warned > 0;
+}
+
+/// "4, 6"; as many as a headline takes.
+template <class Is>
+std::string numbers_of(const LiveState& state, const Is& is) {
+  constexpr int kMostNamed = 8;
+  std::string out;
+  int named = 0;
+  for (const LiveScan& scan : state.scans) {
+    if (scan.dropped || !is(scan) || named > kMostNamed) {
+      continue;
+    }
+    out += (out.empty() ? "" : ", ") + (named++ == kMostNamed ? "…" : std::to_string(scan.id));
+  }
+  return out;
+}
+
+/// What of the session is damaged, lost or void: on every opening, and before anything is signed. What ended
+/// a run, and a scanner that is still to be chosen, keep the headline.
+void say_faults(Statement& out, const LiveState& state, bool has_device, bool conclusive, Language language) {
+  const std::string damaged = damaged_scans(state);
+  const std::string may_be_out = scans_of_lost_records(state);
+  std::string said;
+  if (!state.void_signed_by.empty()) {
+    said = damaged.empty() ? filled(text_of(Text::kVoidSignatureSince, language),
+                                    state.void_signed_by.c_str(), translated(state.void_since, language))
+                           : filled(text_of(Text::kVoidSignature, language), state.void_signed_by.c_str());
+  }
+  if (!state.lost_records.empty()) {
+    add_sentence(said, filled(text_of(Text::kLostRecords, language),
+                              translated(one_line(state.lost_records), language)));
+  }
+  if (!may_be_out.empty()) {
+    add_sentence(said, filled(text_of(Text::kMayBeTakenOut, language), may_be_out));
+  }
+  const bool is_free = !state.error && has_device;
+  if (!damaged.empty()) {
+    const bool is_one = damaged.find(',') == std::string::npos;
+    const std::string line =
+        filled(text_of(is_one ? Text::kDamagedScan : Text::kDamagedScans, language), damaged);
+    // What is red by the lack of them is not to be scanned first.
+    add_sentence(said, text_of(Text::kDamagedHow, language));
+    out.detail = is_free ? said : fmt::format("{} {}. {}", out.detail, line, said);
+    out.headline = is_free ? line : out.headline;
+    out.tone = Tone::kBad;
+    return;
+  }
+  if (said.empty()) {
+    return;
+  }
+  if (!state.lost_records.empty() || !may_be_out.empty()) {
+    out.tone = out.tone == Tone::kBad ? out.tone : Tone::kWarn;
+    if (is_free && !state.signed_off) {
+      if (!conclusive) {  // what it said is still what is next
+        add_sentence(said, out.headline + ".");
+      }
+      out.headline = text_of(conclusive ? Text::kConclusiveLost : Text::kRecordsLost, language);
+    }
+  }
+  add_sentence(said, out.detail);
+  out.detail = said;
 }
 
 bool is_turned_by_hand(const NextView& next) {
@@ -221,6 +283,7 @@ void say_still(Statement& out, const LiveState& state, bool has_device, Wording 
     }
     add_warnings(out, state, language);
   }
+  say_faults(out, state, has_device, conclusive, language);
 }
 
 }  // namespace
@@ -242,6 +305,14 @@ std::string scan_warning(const LiveScan& scan, Language language) {
     return {};
   }
   return filled(text_of(Text::kScanSays, language), scan.id, translated(scan.pose->warning, language));
+}
+
+std::string damaged_scans(const LiveState& state) {
+  return numbers_of(state, [](const LiveScan& scan) { return scan.damaged; });
+}
+
+std::string scans_of_lost_records(const LiveState& state) {
+  return numbers_of(state, [](const LiveScan& scan) { return scan.record_lost; });
 }
 
 std::string place_words(const LiveScan& scan, Language language) {

@@ -10,7 +10,7 @@
 
 namespace dubsar::ui {
 
-enum class Tone { kPlain, kHandsOff, kAsk, kGood, kBad };
+enum class Tone { kPlain, kHandsOff, kAsk, kWarn, kGood, kBad };
 
 /// The one thing that the operator is told: what to do next. And which of the three main actions would do
 /// something now.
@@ -41,6 +41,11 @@ struct Statement {
 
 /// What is wrong with a scan although it is in the model, as a sentence; empty where nothing is.
 [[nodiscard]] std::string scan_warning(const LiveScan& scan, Language language);
+
+/// The scans that stand and cannot be read: "4, 6"; empty where all can. What is many ends in "…".
+[[nodiscard]] std::string damaged_scans(const LiveState& state);
+/// Likewise those that stand and may have been taken out, since records of them are lost.
+[[nodiscard]] std::string scans_of_lost_records(const LiveState& state);
 
 /// How well it is known where the scan lies; empty where that is not in question: it is not registered, or it
 /// gives the frame itself.

@@ -13,6 +13,7 @@ namespace {
 Eigen::Vector4f tone_colour(const UiContext& ui, Tone tone) {
   switch (tone) {
     case Tone::kHandsOff:
+    case Tone::kWarn:
       return ui.colours.amber;
     case Tone::kAsk:
       return ui.colours.ghost;
