@@ -14,6 +14,12 @@
 
 namespace dubsar {
 
+/// Bits of Sheet::marks.
+enum SheetMark : std::uint8_t {
+  kLooseMark = 1,   ///< measured and without a face: gaps may be closed of it
+  kSparseMark = 2,  ///< clay is missing there: the red map shows it
+};
+
 /// A mesh under construction: what seams and gaps need to know of each vertex. Faces form an oriented
 /// edge-manifold (no half-edge twice).
 struct Sheet {
@@ -22,8 +28,7 @@ struct Sheet {
   std::vector<float> spacing_mm;           ///< µ of the scan that a vertex comes from
   std::vector<float> sigma_mm;             ///< standard deviation along the normal
   std::vector<Triangle> faces;
-  /// 1: measured and without a face, gaps may be closed of it; 2: sparse, clay is missing there; or empty.
-  std::vector<std::uint8_t> loose;
+  std::vector<std::uint8_t> marks;  ///< SheetMark; or empty
   /// 0 for vertices of which some faces are elsewhere: an edge between two of them is not open, whatever it
   /// looks like. Empty: all faces are here.
   std::vector<std::uint8_t> whole;

@@ -161,7 +161,7 @@ bool is_narrow(const Sheet& sheet, const std::vector<std::uint32_t>& opening, co
 bool is_flagged(const Sheet& sheet, const std::vector<std::uint32_t>& opening) {
   constexpr std::ptrdiff_t kLeastSparse = 3;  // around 3 × 3 missing samples there are four
   return std::ranges::count_if(opening, [&](std::uint32_t v) {
-           return v < sheet.loose.size() && (sheet.loose[v] & 2) != 0;
+           return v < sheet.marks.size() && (sheet.marks[v] & kSparseMark) != 0;
          }) >= kLeastSparse;
 }
 

@@ -12,8 +12,8 @@ constexpr float kCellSpacings = 4.0F;
 
 LooseVertices::LooseVertices(const Sheet& sheet) : sheet_(&sheet) {
   float coarsest_mm = 0;
-  for (std::size_t v = 0; v < sheet.loose.size(); ++v) {
-    if ((sheet.loose[v] & 1) != 0) {
+  for (std::size_t v = 0; v < sheet.marks.size(); ++v) {
+    if ((sheet.marks[v] & kLooseMark) != 0) {
       coarsest_mm = std::max(coarsest_mm, sheet.spacing_mm[v]);
     }
   }
@@ -21,8 +21,8 @@ LooseVertices::LooseVertices(const Sheet& sheet) : sheet_(&sheet) {
     return;
   }
   cells_per_mm_ = 1.0F / (kCellSpacings * coarsest_mm);
-  for (std::uint32_t v = 0; v < sheet.loose.size(); ++v) {
-    if ((sheet.loose[v] & 1) != 0) {
+  for (std::uint32_t v = 0; v < sheet.marks.size(); ++v) {
+    if ((sheet.marks[v] & kLooseMark) != 0) {
       const Eigen::Vector3f& p = sheet.positions[v];
       cells_[key_of(cell_of(p.x()), cell_of(p.y()), cell_of(p.z()))].push_back(v);
     }

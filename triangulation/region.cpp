@@ -203,7 +203,7 @@ void Region::fill(const Draft& draft, std::span<const std::uint32_t> local_of,
   sheet.normals.resize(count);
   sheet.spacing_mm.resize(count);
   sheet.sigma_mm.resize(count);
-  sheet.loose.resize(count);
+  sheet.marks.resize(count);
   sheet.whole.resize(count);
   parallel_for_each_index(
       count,
@@ -215,7 +215,8 @@ void Region::fill(const Draft& draft, std::span<const std::uint32_t> local_of,
         sheet.sigma_mm[k] = mesh.sigma_mm[v];
         const bool is_loose = k < whole_ && draft.near_rim[v] == Draft::kLoose;
         const bool is_sparse = v < mesh.flags.size() && (mesh.flags[v] & kVertexSparse) != 0;
-        sheet.loose[k] = static_cast<std::uint8_t>((is_loose ? 1 : 0) | (is_sparse ? 2 : 0));
+        sheet.marks[k] =
+            static_cast<std::uint8_t>((is_loose ? kLooseMark : 0) | (is_sparse ? kSparseMark : 0));
         sheet.whole[k] = k < whole_ ? 1 : 0;
       },
       kGrain);
@@ -236,7 +237,7 @@ void Region::fill(const Draft& draft, std::span<const std::uint32_t> local_of,
       kGrain);
   for (const Triangle& f : sheet.faces) {
     for (const std::uint32_t v : f) {
-      sheet.loose[v] &= 2;
+      sheet.marks[v] &= kSparseMark;
     }
   }
 }

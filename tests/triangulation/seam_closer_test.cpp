@@ -128,7 +128,7 @@ TEST(GapFill, WhatIsSparseAroundAHoleLeavesItOpen) {
   }
   Sheet sheet;
   append(sheet, triangulate_grid(grid, {}), 0.1F);
-  sheet.loose.assign(sheet.positions.size(), 2);
+  sheet.marks.assign(sheet.positions.size(), kSparseMark);
   ASSERT_EQ(report_of(sheet).boundary_loops, 5U);
   Front front(sheet);
   close_seams(front, {});
