@@ -33,26 +33,33 @@ class AnalyzeFields : public ::testing::Test {
   test::TemporaryFolder folder_;
 };
 
-TEST_F(AnalyzeFields, AMeshInMetresIsToldByItsSizeAndTakenWhenSaid) {
+TEST_F(AnalyzeFields, AMeshInMetresIsTakenForOneAndThatIsTold) {
   const std::string mesh = sphere_file("metres.stl", 0.015F, 3);
-  const Outcome doubted = run_command({"analyze", mesh, "-o", at("w.json").string()});
-  EXPECT_EQ(doubted.status, 2);
-  EXPECT_THAT(doubted.err, HasSubstr("--unit m"));
-  EXPECT_FALSE(fs::exists(at("w.json")));
-  EXPECT_EQ(run_command({"analyze", mesh, "-o", at("w.json").string(), "--unit", "m"}).status, 0);
+  const Outcome assumed = run_command({"analyze", mesh, "-o", at("w.json").string(), "--json"});
+  EXPECT_EQ(assumed.status, 0);
+  EXPECT_THAT(assumed.err, HasSubstr("its numbers are taken for m"));
+  EXPECT_EQ(assumed.json()["unit_assumed"], "m");
+  const Outcome said = run_command({"analyze", mesh, "-o", at("w.json").string(), "--unit", "m", "--json"});
+  EXPECT_EQ(said.status, 0);
+  EXPECT_FALSE(said.json().contains("unit_assumed"));
   EXPECT_EQ(run_command({"analyze", mesh, "-o", at("w.json").string(), "--unit", "mm"}).status, 0);
   const std::string micrometres = sphere_file("um.stl", 15000, 3);
-  EXPECT_THAT(run_command({"analyze", micrometres, "-o", at("w.json").string()}).err, HasSubstr("--unit um"));
+  EXPECT_THAT(run_command({"analyze", micrometres, "-o", at("w.json").string()}).err,
+              HasSubstr("its numbers are taken for um"));
   // As millimetres such numbers would be too coarse: that must not be what is told.
   const std::string large = sphere_file("large_um.stl", 100000, 3);
-  EXPECT_THAT(run_command({"analyze", large, "-o", at("w.json").string()}).err, HasSubstr("--unit um"));
+  EXPECT_THAT(run_command({"analyze", large, "-o", at("w.json").string()}).err,
+              HasSubstr("its numbers are taken for um"));
 }
 
 TEST_F(AnalyzeFields, CentimetresAndInchesAreNamed) {
   const std::string mesh = sphere_file("small.stl", 1.5F, 3);
   const Outcome doubted = run_command({"analyze", mesh, "-o", at("w.json").string()});
   EXPECT_EQ(doubted.status, 2);
-  EXPECT_THAT(doubted.err, HasSubstr("look like cm or in: say so with --unit cm or in"));
+  EXPECT_FALSE(fs::exists(at("w.json")));
+  EXPECT_THAT(doubted.err,
+              HasSubstr("repeat it with --unit cm (30 x 30 x 30 mm), --unit mm (3 x 3 x 3 mm) or "
+                        "--unit in (76.2 x 76.2 x 76.2 mm)"));
   EXPECT_EQ(run_command({"analyze", mesh, "-o", at("w.json").string(), "--unit", "mm"}).status, 0);
 }
 

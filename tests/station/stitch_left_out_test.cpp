@@ -137,7 +137,8 @@ TEST_F(StitchLeftOut, AFileThatCannotBeReadKeepsItsNumber) {
   const Outcome plain = run_command({"register", at("scans"), "--json"});
   EXPECT_EQ(plain.status, 1) << plain.err;
   std::vector<int> ids;
-  for (const nlohmann::json& scan : plain.json()["scans"]) {
+  const nlohmann::json poses = plain.json();
+  for (const nlohmann::json& scan : poses["scans"]) {
     ids.push_back(scan["id"]);
   }
   EXPECT_THAT(ids, ::testing::ElementsAre(0, 2, 3));
