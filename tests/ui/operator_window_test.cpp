@@ -173,7 +173,6 @@ wait cdli
 pause 0.2
 expect title-whole
 expect whole.close-tablet
-expect whole.next-tablet
 key escape
 pause 0.2
 key enter
@@ -190,10 +189,12 @@ key enter
 wait signed
 click calibration
 wait verify-artefact
+click verify-artefact
+type plate.toml
 pause 0.2
 expect whole.verify-now
 expect whole.close-calibration
-key escape
+click close-calibration
 pause 0.2
 click viewer
 wait whole
