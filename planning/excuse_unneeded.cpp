@@ -328,8 +328,7 @@ void excuse_tried(std::span<const PlacedScan> scans, const SurfaceCover& cover, 
       scans, cover, surface_mm2, options,
       std::to_string(options.tries) +
           " scans looked straight at it, each from elsewhere, and brought no dense samples: too dark, too "
-          "shiny, too deep "
-          "or no surface",
+          "shiny, too deep or no surface",
       [&](std::uint32_t i) {
         return full_looks_apart(red.targets[i].tried) >= static_cast<std::size_t>(options.tries);
       },
