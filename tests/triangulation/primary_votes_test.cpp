@@ -66,7 +66,7 @@ TEST(PrimaryVotes, OfTwoScansThatSeeAPlaceAlikeNoiseDoesNotDecideNodeByNode) {
     two.surfaces[1].score[node] = 1.0F + noise(random);
   }
   const auto votes = two.votes();
-  EXPECT_LE(borders(votes[0]), 2 * kNodes);  // by the score alone some 1100
+  EXPECT_LE(borders(votes[0]), 2 * kNodes);  // by the score alone over a thousand
   EXPECT_EQ(votes[0][20 * kNodes + 2], 1.0F);
   EXPECT_EQ(votes[0][20 * kNodes + 37], -1.0F);
   for (std::size_t node = 0; node < votes[0].size(); ++node) {
