@@ -10,6 +10,7 @@
 #include "acquisition/sign_off_log.h"
 #include "core/log.h"
 #include "station/followed_word.h"
+#include "station/not_conclusive.h"
 #include "station/plan_again.h"
 #include "station/session_faults.h"
 
@@ -56,8 +57,7 @@ std::optional<Error> falls_short(const ScanSet& set, const Results& results, con
     for (const FaceCoverage& face : results.checklist.faces) {
       red_mm2 += face.red_mm2;
     }
-    return Error{ErrorKind::kUsage, fmt::format("not conclusive: about {:.1f} mm2 are still red", red_mm2),
-                 where, mend};
+    return Error{ErrorKind::kUsage, not_conclusive(red_mm2), where, mend};
   }
   if (!results.checklist.store_whole) {
     return Error{ErrorKind::kBadInput, "the session is damaged", where,

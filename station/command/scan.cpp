@@ -28,6 +28,7 @@
 #include "station/command/size_option.h"
 #include "station/command/terminal.h"
 #include "station/engine.h"
+#include "station/not_conclusive.h"
 #include "station/pin_faults.h"
 
 namespace dubsar {
@@ -112,8 +113,8 @@ std::string verdict(const EngineResult& result) {
   if (result.red_map.conclusive) {
     return fmt::format("conclusive after {}, {} registered", scans, registered);
   }
-  return fmt::format("not conclusive: about {:.1f} mm2 are still red after {}, {} registered",
-                     red_area_mm2(result.red_map), scans, registered);
+  return fmt::format("{} after {}, {} registered", not_conclusive(red_area_mm2(result.red_map)), scans,
+                     registered);
 }
 
 nlohmann::ordered_json result_json(const ScanArguments& arguments, const EngineResult& result) {

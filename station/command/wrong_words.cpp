@@ -126,7 +126,9 @@ std::optional<Error> unknown_verb(const CLI::App& app) {
   }
   std::string all;
   for (const CLI::App* one : known) {
-    all += (all.empty() ? "there are: " : ", ") + one->get_name();
+    if (!one->get_group().empty()) {  // others are for those who make packages
+      all += (all.empty() ? "there are: " : ", ") + one->get_name();
+    }
   }
   const std::string within = &verb == &app ? "" : verb.get_name();
   if (rest.empty() || word->empty()) {

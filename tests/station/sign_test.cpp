@@ -8,6 +8,7 @@
 #include <fstream>
 
 #include "acquisition/session_store.h"
+#include "station/not_conclusive.h"
 #include "tests/station/support/bumpy_scans.h"
 #include "tests/station/support/command.h"
 #include "tests/support/temporary_folder.h"
@@ -41,6 +42,12 @@ class HalfScanned : public ::testing::Test {
   test::TemporaryFolder folder_;
   std::string session_;
 };
+
+TEST(NotConclusive, SaysHowMuchIsRedButNeverThatNothingIs) {
+  EXPECT_EQ(not_conclusive(12.34), "not conclusive: about 12.3 mm2 are still red");
+  EXPECT_EQ(not_conclusive(0.03), "not conclusive: less than 0.1 mm2 are still red");
+  EXPECT_EQ(not_conclusive(0), "not conclusive: no scan is registered, nothing is known of the clay");
+}
 
 TEST_F(HalfScanned, IsSignedAsIncompleteOnlyAndWithTheReason) {
   const Outcome refused = sign({"--name", "A. Reader"});
