@@ -65,7 +65,7 @@ class Check {
       report_.algorithms.push_back(manifest.algorithm);
     }
     check_listing(payload, tags);
-    check_oxum();
+    check_info();
     if (const Status summed = check_sums(payload, tags); !summed) {
       return std::unexpected(summed.error());
     }
@@ -226,7 +226,7 @@ class Check {
     }
   }
 
-  void check_oxum() {
+  void check_info() {
     if (!files_.contains("bag-info.txt")) {
       return;
     }
@@ -234,7 +234,16 @@ class Check {
     if (!text) {
       return;
     }
-    const Result<std::optional<BagOxum>> told = parse_bag_oxum(*text, "bag-info.txt");
+    // RFC 8493 asks for none; but what was there and is gone is a loss.
+    const std::string tags = "tagmanifest-sha512.txt";
+    if (is_written_by_dubsar(*text) && !files_.contains(tags) && !is_hidden(tags)) {
+      say(tags, "missing: nothing covers bag-info.txt and what else lies beside the payload");
+    }
+    check_oxum(*text);
+  }
+
+  void check_oxum(const std::string& bag_info) {
+    const Result<std::optional<BagOxum>> told = parse_bag_oxum(bag_info, "bag-info.txt");
     if (!told) {
       report_.damaged.push_back(told.error());
       return;
@@ -322,6 +331,10 @@ bool is_bag(const fs::path& folder) {
   return fs::is_regular_file(folder / kDeclaration, ignored) ||
          (fs::is_regular_file(folder / "manifest-sha512.txt", ignored) &&
           fs::is_directory(folder / "data", ignored));
+}
+
+bool is_written_by_dubsar(const std::string& bag_info) {
+  return ("\n" + bag_info).find("\nBag-Software-Agent: Dubsar ") != std::string::npos;
 }
 
 Result<BagReport> check_bag(const fs::path& folder, JobContext& job) {

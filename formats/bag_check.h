@@ -26,10 +26,13 @@ struct BagReport {
 /// payload.
 [[nodiscard]] bool is_bag(const std::filesystem::path& folder);
 
+/// Whether "Bag-Software-Agent: Dubsar 0.1.0" stands in this bag-info.txt.
+[[nodiscard]] bool is_written_by_dubsar(const std::string& bag_info);
+
 /// Whether a bag is complete and valid (RFC 8493, section 3): every payload file in every manifest and the
-/// other way round, every checksum that digest_named() knows, the tag manifests, Payload-Oxum, and nothing
-/// that leads out of the bag. Reads every byte; changes nothing. Errors: kCancelled; all else is in the
-/// report.
+/// other way round, every checksum that digest_named() knows, the tag manifests (one at
+/// least where Dubsar wrote the bag), Payload-Oxum, and nothing that leads out of the bag. Reads every byte;
+/// changes nothing. Errors: kCancelled; all else is in the report.
 [[nodiscard]] Result<BagReport> check_bag(const std::filesystem::path& folder, JobContext& job);
 
 }  // namespace dubsar

@@ -19,4 +19,17 @@ fs::path resolved_place(const fs::path& path) {
   return resolved.has_filename() ? resolved : resolved.parent_path();
 }
 
+Status check_goes_up_from_folders(const fs::path& path) {
+  std::error_code ignored;
+  fs::path so_far;
+  for (const fs::path& name : path) {
+    if (name == ".." && !so_far.empty() && !fs::is_directory(so_far, ignored)) {
+      return fail(ErrorKind::kUsage, "there is no folder to go up from", so_far.string(),
+                  "write the path without it");
+    }
+    so_far /= name;
+  }
+  return {};
+}
+
 }  // namespace dubsar

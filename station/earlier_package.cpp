@@ -128,10 +128,9 @@ Status check_by_hand(const fs::path& package, const fs::path& session) {
   return {};
 }
 
-/// "Bag-Software-Agent: Dubsar 0.1.0" stands in bag-info.txt.
 bool names_dubsar(const fs::path& package) {
   const Result<std::string> info = read_whole_file(package / "bag-info.txt", kMaxBagTextBytes);
-  return info && ("\n" + *info).find("\nBag-Software-Agent: Dubsar ") != std::string::npos;
+  return info && is_written_by_dubsar(*info);
 }
 
 Status check_is_whole(const fs::path& package, JobContext& job) {
@@ -159,8 +158,11 @@ Status check_is_package(const fs::path& folder) {
        (names_dubsar(folder) || fs::is_regular_file(folder / "data" / kPackedEvents, ignored)))) {
     return {};
   }
-  return fail(ErrorKind::kUsage, "what lies there is no package of Dubsar, so it is not replaced",
-              folder.string(), "choose another folder, or remove it yourself");
+  return fs::is_symlink(lies)
+             ? fail(ErrorKind::kUsage, "this is a link to what is not there", folder.string(),
+                    "choose another folder, or remove the link yourself")
+             : fail(ErrorKind::kUsage, "what lies there is no package of Dubsar, so it is not replaced",
+                    folder.string(), "choose another folder, or remove it yourself");
 }
 
 Status check_is_of_session(const fs::path& package, const SessionStore& store) {

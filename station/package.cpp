@@ -192,10 +192,8 @@ Result<Package> write_package(const fs::path& session, const fs::path& to, const
   if (const Status there = check_is_session(session); !there) {
     return std::unexpected(there.error());
   }
-  if (options.replace) {
-    if (const Status ours = check_is_package(to); !ours) {
-      return std::unexpected(ours.error());
-    }
+  if (const Status ours = check_is_package(to); !ours) {
+    return std::unexpected(ours.error());
   }
   Result<StagedFolder> staged = StagedFolder::begin(to, options.replace);
   if (!staged) {

@@ -81,6 +81,9 @@ void take_back(const StampedWork& work, const std::string& before) {
 }  // namespace
 
 Result<Packing> pack_session(const PackRequest& asked, JobContext& job) {
+  if (const Status there = check_goes_up_from_folders(asked.to); !there) {
+    return std::unexpected(there.error());
+  }
   PackRequest request = asked;
   request.to = resolved_place(asked.to);  // one place to be checked and written
   if (const Status outside = check_place_of_package(request.to); !outside) {

@@ -24,7 +24,7 @@ struct Packing {
 
 /// write_package() with a stamp beside it (done_stamp.h), so that packing the same session again finds it
 /// done. The package goes where `to` leads (resolved_place()). Errors: those of write_package(), and kUsage
-/// for a place in a session or package (check_place_of_package()).
+/// for a place in a session or package (check_place_of_package()), and behind a ".." that leads nowhere.
 [[nodiscard]] Result<Packing> pack_session(const PackRequest& request, JobContext& job);
 
 /// Whether a package of the session as it stands lies there, by whatever version and with whatever was left

@@ -3,6 +3,7 @@
 #include "station/tablet_record.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "formats/json_node.h"
 #include "formats/json_text.h"
@@ -12,6 +13,23 @@ namespace dubsar {
 namespace {
 
 constexpr const char* kDocument = "tablet";
+constexpr std::size_t kMostBytesOfALine = 1000, kMostBytesOfNotes = 100'000;
+
+/// What heads pages, names files and is printed everywhere is no place for a text.
+Status check_lengths(const TabletRecord& record) {
+  for (const auto& [what, text] :
+       {std::pair{"the museum number", &record.museum_number},
+        std::pair{"the collection", &record.collection}, std::pair{"the operator", &record.operator_name},
+        std::pair{"the rights", &record.rights}, std::pair{"the notes", &record.notes}}) {
+    if (text == &record.notes && text->size() > kMostBytesOfNotes) {
+      return fail(ErrorKind::kUsage, "more than 100 000 bytes", what, "say less");
+    }
+    if (text != &record.notes && text->size() > kMostBytesOfALine) {
+      return fail(ErrorKind::kUsage, "more than 1000 bytes", what, "say less");
+    }
+  }
+  return {};
+}
 
 }  // namespace
 
@@ -73,6 +91,9 @@ Result<TabletRecord> parse_tablet_record(std::string_view text, const std::strin
 Status keep_tablet_record(SessionStore& store, const TabletRecord& record) {
   if (const Status checked = check_cdli(record.cdli); !checked) {
     return checked;
+  }
+  if (const Status fits = check_lengths(record); !fits) {
+    return fits;
   }
   const bool says_more = record != tablet_record_of(store);
   const std::string text = tablet_record_to_json(record);

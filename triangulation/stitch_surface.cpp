@@ -247,7 +247,7 @@ StitchSurface bare_surface(const PlacedScan& scan) {
   out.reliability_code.assign(n, 0);
   out.weight_code.assign(n, 0);
   out.rim.assign(n, 0);
-  if (grid.rgb.size() == 3 * n) {
+  if (n > 0 && grid.rgb.size() == 3 * n) {
     out.colours.resize(n);
     std::memcpy(out.colours.data(), grid.rgb.data(), grid.rgb.size());
   }

@@ -130,9 +130,11 @@ Result<int> verify_bag(const Arguments& arguments, CommandContext& context) {
   }
   std::printf("%zu whole, %zu %s: the bag is %s\n", report->whole.size(), report->damaged.size(),
               report->damaged.size() == 1 ? "fault" : "faults",
-              !report->ok()               ? "NOT valid"
-              : report->unchecked.empty() ? "complete and valid"
-                                          : "complete, and valid by what can be checked here");
+              !report->ok()                ? "NOT valid"
+              : !report->unchecked.empty() ? "complete, and valid by what can be checked here"
+              : !report->unrecorded.empty()
+                  ? "complete and valid; it keeps no checksum of what is listed above"
+                  : "complete and valid");
   return report->ok() ? 0 : 1;
 }
 

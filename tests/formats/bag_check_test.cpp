@@ -52,6 +52,16 @@ TEST_F(BagTest, EveryFlippedByteIsNoticed) {
   EXPECT_TRUE(check().ok());
 }
 
+TEST_F(BagTest, WhereDubsarWroteItALostTagManifestIsDamage) {
+  fs::remove(bag() / "tagmanifest-sha512.txt");
+  EXPECT_TRUE(check().ok()) << "RFC 8493 asks for none";
+  EXPECT_THAT(check().unrecorded, Contains("bag-info.txt"));
+  put("bag-info.txt", "Bag-Software-Agent: Dubsar 0.1.0\nPayload-Oxum: 23.2\n");
+  EXPECT_THAT(faults(), ElementsAre(HasSubstr("tagmanifest-sha512.txt: missing")));
+  list_all();
+  EXPECT_TRUE(check().ok());
+}
+
 TEST_F(BagTest, MissingAndExtraFilesAreNamed) {
   fs::remove(bag() / "data/master.ply");
   put("data/stowaway.txt", "23 bytes, no: 26 of them.\n");

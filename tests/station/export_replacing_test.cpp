@@ -22,8 +22,10 @@ using test::bytes_of;
 using test::files_below;
 using test::Outcome;
 using test::run_command;
+using ::testing::AllOf;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
+using ::testing::Not;
 using ::testing::SizeIs;
 
 TEST_F(Export, NeverOverwritesUnasked) {
@@ -34,9 +36,16 @@ TEST_F(Export, NeverOverwritesUnasked) {
 
   fs::create_directories(at("precious"));
   std::ofstream(at("precious") / "thesis.txt") << "all of it";
-  EXPECT_EQ(export_to("precious", {}).status, 2);
+  const Outcome precious = export_to("precious", {});
+  EXPECT_EQ(precious.status, 2);
+  EXPECT_THAT(precious.err, Not(HasSubstr("--force"))) << "which would not do it";
   EXPECT_EQ(export_to("precious", {"--force"}).status, 2) << "that is no package";
   EXPECT_EQ(bytes_of(at("precious") / "thesis.txt"), "all of it");
+
+  fs::create_symlink("nowhere", at("dangling"));
+  const Outcome dangling = export_to("dangling", {});
+  EXPECT_EQ(dangling.status, 2);
+  EXPECT_THAT(dangling.err, AllOf(HasSubstr("a link to what is not there"), Not(HasSubstr("--force"))));
 
   const std::vector<std::string> small{"--without", "renderings,features,wedges,grid-ply"};
   ASSERT_EQ(export_to("twice", small).status, 0);

@@ -302,6 +302,9 @@ TEST_F(Export, BadUsageIsToldInOneLine) {
   EXPECT_EQ(run_command({"export", at("session").string()}).status, 2);
   EXPECT_EQ(run_command({"export", at("nowhere").string(), "--to", at("x").string()}).status, 2);
   EXPECT_EQ(export_to("x", {"--without", "everything"}).status, 2);
+  const Outcome astray = export_to("none/../x", {});
+  EXPECT_EQ(astray.status, 2) << "which the system would refuse";
+  EXPECT_THAT(astray.err, HasSubstr("there is no folder to go up from"));
   for (const char* url :
        {"museum.example/t", "https://museum.example/a tablet/", "https://museum.example/?t=", "https://",
         "http:///x", "https://:80/", "https://@/x", "https://museum.example/%zz", "https://museum.example/%2",

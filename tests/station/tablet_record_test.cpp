@@ -21,6 +21,23 @@ TEST(TabletRecord, ACdliNumberIsAPAndSixDigits) {
   EXPECT_EQ(*again, record);
 }
 
+TEST(TabletRecord, WhatHeadsPagesAndNamesFilesIsNoText) {
+  const test::TemporaryFolder folder;
+  Result<SessionStore> store = SessionStore::open_or_create(folder.path() / "session");
+  ASSERT_TRUE(store) << store.error().line();
+  TabletRecord record;
+  record.museum_number = std::string(1001, '1');
+  const Status kept = keep_tablet_record(*store, record);
+  ASSERT_FALSE(kept);
+  EXPECT_EQ(kept.error().line(), "the museum number: more than 1000 bytes; say less");
+  EXPECT_EQ(tablet_record_of(*store), TabletRecord());
+  record.museum_number.pop_back();
+  record.notes = std::string(100'000, 'n');
+  EXPECT_TRUE(keep_tablet_record(*store, record));
+  record.notes += "n";
+  EXPECT_FALSE(keep_tablet_record(*store, record));
+}
+
 TEST(TabletRecord, WhatWasSaidBeforeStaysInTheRecord) {
   const test::TemporaryFolder folder;
   Result<SessionStore> store = SessionStore::open_or_create(folder.path() / "session");

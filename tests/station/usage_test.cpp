@@ -109,8 +109,9 @@ TEST(CommandUsage, AVerbThatIsMistypedOrMissingIsAnsweredWithThoseThatThereAre) 
       {{""}, "a verb is missing; there are: drivers, "},
       {{"session", ""}, "session: a verb is missing; there are: list, "},
       {{"mesh"}, "mesh: a verb is missing; there are: check, convert, section, part"},
-      {{}, "a verb is missing; there are: drivers, simulate, calibrate, scan, register, plan, pins, stitch, "
-           "analyze, wedges, search, mesh, export, verify, session, view, station, bench\n"}};
+      {{},
+       "a verb is missing; there are: drivers, simulate, calibrate, scan, register, plan, pins, stitch, "
+       "analyze, wedges, search, mesh, export, verify, session, view, station, bench\n"}};
   for (const auto& [words, answer] : said) {
     const Outcome outcome = run_command(words);
     EXPECT_EQ(outcome.status, 2);

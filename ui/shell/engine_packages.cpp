@@ -34,6 +34,11 @@ constexpr EnginePhrase kPhrases[] = {
     {": what was replaced cannot be taken away: ", ": was ersetzt wurde, lässt sich nicht wegnehmen: "},
     {"; it is needed no more", "; es wird nicht mehr gebraucht"},
     // the package that lies there
+    {"there is no folder to go up from", "hier ist kein Ordner, aus dem es hinaufgeht"},
+    {"write the path without it", "den Pfad ohne ihn schreiben"},
+    {"this is a link to what is not there", "dies ist ein Verweis auf etwas, das nicht da ist"},
+    {"choose another folder, or remove the link yourself",
+     "einen anderen Ordner wählen, oder den Verweis selbst entfernen"},
     {"what lies there is no package of Dubsar, so it is not replaced",
      "was dort liegt, ist kein Paket von Dubsar, also wird es nicht ersetzt"},
     {"what lies there is the package of another session, so it is not replaced",
