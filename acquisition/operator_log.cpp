@@ -142,13 +142,9 @@ Status record_unlock(SessionStore& store, int id) {
   return store.append_event(kUnlock, nlohmann::ordered_json{{"id", id}}.dump());
 }
 
-Result<OperatorLog> read_operator_log(const SessionStore& store) {
-  const auto events = store.events();
-  if (!events) {
-    return std::unexpected(events.error());
-  }
+OperatorLog operator_log_of(std::span<const SessionEvent> events) {
   OperatorLog log;
-  for (const SessionEvent& event : *events) {
+  for (const SessionEvent& event : events) {
     if (std::ranges::find(kKinds, event.kind) == kKinds.end()) {
       continue;
     }
@@ -157,6 +153,14 @@ Result<OperatorLog> read_operator_log(const SessionStore& store) {
     }
   }
   return log;
+}
+
+Result<OperatorLog> read_operator_log(const SessionStore& store) {
+  const auto events = store.events();
+  if (!events) {
+    return std::unexpected(events.error());
+  }
+  return operator_log_of(*events);
 }
 
 }  // namespace dubsar

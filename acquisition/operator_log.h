@@ -4,6 +4,8 @@
 
 #include <cstdint>
 #include <map>
+#include <span>
+#include <vector>
 
 #include "acquisition/session_store.h"
 #include "core/pose_hint.h"
@@ -41,6 +43,7 @@ struct OperatorLog {
   OperatorWord word;
   std::vector<Error> damage;
 };
+[[nodiscard]] OperatorLog operator_log_of(std::span<const SessionEvent> events);
 [[nodiscard]] Result<OperatorLog> read_operator_log(const SessionStore& store);
 
 /// kUsage unless the scan is there, whole and not taken out.
