@@ -5,9 +5,12 @@
 #include <algorithm>
 #include <bit>
 #include <cstddef>
+#include <functional>
+#include <tuple>
 
 #include "core/parallel.h"
 #include "core/random.h"
+#include "core/same_marks.h"
 
 namespace dubsar {
 
@@ -25,6 +28,16 @@ std::uint64_t pair_of(std::uint32_t low, std::uint32_t high) {
 void take(SampleDigest& into, std::uint64_t across, std::uint64_t along) {
   into.across = seed_for(into.across, across);
   into.along = seed_for(into.along, along);
+}
+
+/// So many times the rounding of one coordinate the marks of a copy may lie elsewhere in the same frame: a
+/// motion that is fitted to a few of them is not exact.
+constexpr double kSamePlaceOfRounding = 8.0;
+
+/// Of one that are told the same whichever is given first.
+std::optional<RigidTransform> motion_between(const ScanPrint& a, const ScanPrint& b) {
+  const bool a_is_part = std::tie(a.samples, a.digest) < std::tie(b.samples, b.digest);
+  return whole_from_part((a_is_part ? b : a).marks, (a_is_part ? a : b).marks);
 }
 
 }  // namespace
@@ -53,26 +66,95 @@ std::optional<SampleDigest> sample_digest(const RangeGrid& grid) {
   return all.samples == 0 ? std::nullopt : std::optional(all.digest);
 }
 
-std::vector<ScanCopy> copies_among(const std::map<int, std::optional<SampleDigest>>& samples) {
-  std::map<SampleDigest, int> first_with;
-  std::vector<ScanCopy> copies;
-  for (const auto& [id, digest] : samples) {
-    if (!digest) {
-      continue;
-    }
-    if (const auto [first, is_new] = first_with.try_emplace(*digest, id); !is_new) {
-      copies.push_back({id, first->second});
+std::optional<ScanPrint> scan_print(const RangeGrid& grid) {
+  const std::optional<SampleDigest> digest = sample_digest(grid);
+  return digest ? std::optional(ScanPrint{*digest, grid.valid_count(), scan_marks(grid)}) : std::nullopt;
+}
+
+bool are_copies(const ScanPrint& a, const ScanPrint& b) {
+  return a.digest == b.digest || motion_between(a, b).has_value();
+}
+
+bool are_copies_in_place(const ScanPrint& a, const ScanPrint& b) {
+  /// Points that are put into rows and columns anew lose up to a sixth.
+  constexpr double kLeastPart = 0.8;
+  const auto [less, more] = std::minmax({a.samples, b.samples});
+  if (a.digest == b.digest || static_cast<double>(less) < kLeastPart * static_cast<double>(more)) {
+    return a.digest == b.digest;
+  }
+  const std::optional<RigidTransform> motion = motion_between(a, b);
+  return motion && std::ranges::all_of(a.marks.marks, [&](const ScanMark& mark) {
+           const Eigen::Vector3d at = mark.at_mm.cast<double>();
+           return (*motion * at - at).norm() <= kSamePlaceOfRounding * a.marks.rounding_mm;
+         });
+}
+
+void KnownPrints::add(int id, std::optional<ScanPrint> print) {
+  remove(id);
+  if (!print) {
+    return;
+  }
+  std::vector<std::pair<int, const ScanPrint*>> others;
+  others.reserve(prints_.size());
+  for (const auto& [other, known] : prints_) {
+    others.emplace_back(other, &known);
+  }
+  std::vector<std::uint8_t> same(others.size(), 0);
+  parallel_for_each_index(
+      others.size(), [&](std::size_t k) { same[k] = are_copies(*print, *others[k].second) ? 1 : 0; }, 1);
+  for (std::size_t k = 0; k < others.size(); ++k) {
+    if (same[k] != 0) {
+      same_.insert(std::minmax({id, others[k].first}));
     }
   }
+  prints_.emplace(id, std::move(*print));
+}
+
+void KnownPrints::remove(int id) {
+  if (prints_.erase(id) > 0) {
+    std::erase_if(same_, [id](const auto& pair) { return pair.first == id || pair.second == id; });
+  }
+}
+
+void KnownPrints::clear() {
+  prints_.clear();
+  same_.clear();
+}
+
+std::vector<ScanCopy> KnownPrints::copies() const {
+  std::set<int> all;
+  for (const auto& [id, print] : prints_) {
+    all.insert(id);
+  }
+  return copies_among(std::move(all));
+}
+
+std::vector<ScanCopy> KnownPrints::copies_among(std::set<int> ids) const {
+  std::erase_if(ids, [this](int id) { return !prints_.contains(id); });
+  std::vector<int> most_first(ids.begin(), ids.end());
+  std::ranges::stable_sort(most_first, std::greater{}, [this](int id) { return prints_.at(id).samples; });
+  std::vector<int> count;
+  std::vector<ScanCopy> copies;
+  for (const int id : most_first) {
+    const auto first = std::ranges::find_if(count, [&](int other) {
+      return same_.contains(std::minmax({id, other}));
+    });
+    if (first == count.end()) {
+      count.push_back(id);
+    } else {
+      copies.push_back({id, *first});
+    }
+  }
+  std::ranges::sort(copies);
   return copies;
 }
 
 std::vector<ScanCopy> copies_among(std::span<const PlacedScan> scans) {
-  std::map<int, std::optional<SampleDigest>> samples;
+  KnownPrints known;
   for (const PlacedScan& scan : scans) {
-    samples[scan.id] = sample_digest(*scan.grid);
+    known.add(scan.id, scan_print(*scan.grid));
   }
-  return copies_among(samples);
+  return known.copies();
 }
 
 }  // namespace dubsar

@@ -9,11 +9,12 @@
 
 namespace dubsar {
 
-/// A scan with the very samples of another, such as a file that came twice. No two scans have the same noise:
-/// they are one measurement, wherever their poses put it, and are to count as one.
+/// A scan with the very samples of another, such as a file that came twice, in whatever form: rounded,
+/// turned, cut or in another frame (scan_copies.h). No two scans have the same noise: they are one
+/// measurement, wherever their poses put it, and are to count as one.
 struct ScanCopy {
   int id = 0;
-  int of_id = 0;  ///< the lowest with these samples
+  int of_id = 0;  ///< the one that counts: with the most of these samples, of equals the lowest
 
   auto operator<=>(const ScanCopy&) const = default;
 };

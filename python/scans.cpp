@@ -3,7 +3,6 @@
 // From range grids to poses, and from grids in their places to a mesh.
 
 #include <cmath>
-#include <map>
 
 #include "core/scan_copies.h"
 #include "formats/pins_json.h"
@@ -57,15 +56,15 @@ Result<Registered> register_grids(const Grids& grids, const PinSet* pins,
   }
   job.progress("registering", 1.0);
   Registered out{registrar.poses(), {}};
-  std::map<int, std::optional<SampleDigest>> samples;
+  KnownPrints prints;
   for (ScanPose& pose : out.poses) {
     const RangeGrid& grid = *grids[static_cast<std::size_t>(pose.id)];
     pose.file = grid.source;
     if (pose.status == PoseStatus::kRegistered) {
-      samples[pose.id] = sample_digest(grid);
+      prints.add(pose.id, scan_print(grid));
     }
   }
-  out.copies = copies_among(samples);
+  out.copies = prints.copies();
   return out;
 }
 
@@ -203,7 +202,7 @@ void bind_scans(py::module_& module) {
       py::arg("progress") = py::none(),
       "The poses of grids, in their order. A pose that is not certain is 'unsure' or 'failed' and says why. "
       "starts: for each grid a [4, 4] model_from_scanner to begin with, or None. pins: a pins.json. A grid "
-      "with the very samples of another has its pose, and is warned of (ScanWarning).");
+      "with the very samples of another counts once, and is warned of (ScanWarning).");
   module.def(
       "stitch",
       [](const Grids& grids, const std::vector<ScanPose>& poses, const std::optional<fs::path>& pins_file,

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
+#include <utility>
 
 #include "core/dilated.h"
 #include "core/parallel.h"
@@ -71,14 +73,16 @@ ForeignMatter::ForeignMatter(ForeignMatter&&) noexcept = default;
 ForeignMatter& ForeignMatter::operator=(ForeignMatter&&) noexcept = default;
 
 void ForeignMatter::add(int id, const RangeGrid& grid, const SampleFlags& flags) {
-  witnesses_.erase(id);
+  remove(id);
   if (grid.spacing_mm > 0 && grid.valid_count() > 0) {
     witnesses_[id] = std::make_unique<Witness>(grid, flags);
+    prints_.add(id, scan_print(grid));
   }
 }
 
 void ForeignMatter::remove(int id) {
   witnesses_.erase(id);
+  prints_.remove(id);
 }
 
 bool ForeignMatter::is_suspect(const Placed& own, std::span<const Placed> all) {
@@ -171,16 +175,16 @@ bool ForeignMatter::look(const Placed& own, std::span<const Placed> all) {
 
 std::vector<ForeignFound> ForeignMatter::find(std::span<const ScanPose> poses) {
   std::vector<Placed> placed;
-  std::map<int, std::optional<SampleDigest>> samples;
+  std::set<int> registered;
   for (auto& [id, witness] : witnesses_) {
     witness->matter.clear();
     const auto pose = std::ranges::find(poses, id, &ScanPose::id);
     if (pose != poses.end() && pose->status == PoseStatus::kRegistered) {
       placed.push_back({witness.get(), &*pose});
-      samples[id] = witness->samples;
+      registered.insert(id);
     }
   }
-  copies_ = copies_among(samples);
+  copies_ = prints_.copies_among(std::move(registered));
   std::erase_if(placed, [this](const Placed& one) { return copied_from(copies_, one.pose->id).has_value(); });
   std::vector<std::uint8_t> suspect(placed.size(), 0);
   parallel_for_each_index(

@@ -10,7 +10,7 @@
 
 #include "core/range_grid.h"
 #include "core/sample_flags.h"
-#include "core/scan_copy.h"
+#include "core/scan_copies.h"
 #include "core/scan_pose.h"
 
 namespace dubsar {
@@ -37,8 +37,8 @@ struct ForeignFound {
 /// it alone, not on clay that another scan shows, goes with it. What is left beside it that only this scan
 /// shows may be either, and so may what is shown as often as looked through: it is doubtful, for people to
 /// scan again. How deep a look through must go follows from how well the two scans agree elsewhere: a wrong
-/// pose makes no clay foreign. Of scans with the very samples of each other the one with the lowest id counts
-/// for all: the others neither see nor are seen.
+/// pose makes no clay foreign. Of scans with the very samples of each other one counts for all
+/// (scan_copies.h): the others neither see nor are seen.
 ///
 /// Keeps a witness of each scan that is a good deal smaller than a large grid, which may go. One thread at a
 /// time.
@@ -71,6 +71,7 @@ class ForeignMatter {
   static bool look(const Placed& own, std::span<const Placed> all);
 
   std::map<int, std::unique_ptr<Witness>> witnesses_;
+  KnownPrints prints_;  ///< of these
   std::vector<ScanCopy> copies_;
 };
 

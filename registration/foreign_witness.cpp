@@ -67,9 +67,7 @@ IntoOther::IntoOther(const ScanPose& from, const ScanPose& to) {
 }
 
 ForeignMatter::Witness::Witness(const RangeGrid& from, const SampleFlags& flags)
-    : samples(sample_digest(from)),
-      pins(from.pin_tip_diameter_mm > 0),
-      up((-from.view.direction).cast<float>()) {
+    : pins(from.pin_tip_diameter_mm > 0), up((-from.view.direction).cast<float>()) {
   while (from.size() / static_cast<std::size_t>(stride * stride) > kMostSamples) {
     ++stride;
   }

@@ -11,7 +11,6 @@
 #include "core/range_grid.h"
 #include "core/rigid_transform.h"
 #include "core/sample_flags.h"
-#include "core/scan_copies.h"
 #include "core/scan_pose.h"
 #include "registration/depth_raster.h"
 #include "registration/foreign_matter.h"
@@ -55,7 +54,6 @@ struct ForeignMatter::Witness {
   std::size_t ask(const Witness& other, const IntoOther& into, double sigma_mm,
                   std::vector<ForeignEvidence>& evidence) const;
 
-  std::optional<SampleDigest> samples;  ///< of all that it was
   int stride = 1;
   RangeGrid grid;                  ///< every stride-th sample
   std::vector<std::uint8_t> good;  ///< [samples], 1 on those that are surely sampled

@@ -83,7 +83,7 @@ class ScanModel {
   };
   struct Scan {
     std::string file;
-    std::optional<SampleDigest> samples;
+    std::optional<ScanPrint> print;
     ScanFeatures features;
     std::shared_ptr<const ScanSurface> whole;  ///< as it was entered, while something is left out of it …
     std::vector<std::uint8_t> left_out;        ///< … [cells of its fine grid]: a hand

@@ -49,8 +49,11 @@ bool ScanModel::may_place(int original, int id, const RangeGrid& grid, const Pin
 }
 
 bool ScanModel::take_in(int id, const RangeGrid* grid, const PinSet* pins, bool has_start, JobContext& job) {
-  const std::optional<SampleDigest> samples = grid != nullptr ? sample_digest(*grid) : std::nullopt;
-  const auto is_same = [&](const auto& entry) { return samples && entry.second.samples == samples; };
+  std::optional<ScanPrint> print = grid != nullptr ? scan_print(*grid) : std::nullopt;
+  const auto is_same = [&](const auto& entry) {
+    const std::optional<ScanPrint>& other = entry.second.print;
+    return print && other && are_copies_in_place(*print, *other);
+  };
   const auto before = scans_.find(stands_as(id));
   const bool is_replaced = before != scans_.end() && is_same(*before);
   remove(id, job);
@@ -72,7 +75,7 @@ bool ScanModel::take_in(int id, const RangeGrid* grid, const PinSet* pins, bool 
     remove(of, job);
   }
   enter(id, grid, pins);
-  scans_.at(id).samples = samples;
+  scans_.at(id).print = std::move(print);
   copies_.merge(others);
   return true;
 }

@@ -117,8 +117,11 @@ std::optional<std::map<int, ScanModel::WithoutForeign::Marks>> ScanModel::Withou
       out.erase(found.id);
     }
   }
-  for (const ScanCopy& copy : matter.copies()) {  // what shows in a scan shows in its copy
-    if (const auto first = out.find(copy.of_id); first != out.end()) {
+  for (const ScanCopy& copy : matter.copies()) {  // what shows in a scan shows in its copy, cell by cell
+    const RangeGrid& grid = model_.whole_of(copy.id).fine->grid;
+    const RangeGrid& of = model_.whole_of(copy.of_id).fine->grid;
+    if (const auto first = out.find(copy.of_id);
+        first != out.end() && grid.rows == of.rows && grid.cols == of.cols && grid.valid == of.valid) {
       out[copy.id] = first->second;
     }
   }

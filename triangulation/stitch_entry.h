@@ -8,7 +8,6 @@
 #include <utility>
 #include <vector>
 
-#include "core/scan_copies.h"
 #include "triangulation/fusion.h"
 #include "triangulation/pairing.h"
 #include "triangulation/pose_step.h"
@@ -39,8 +38,7 @@ struct Entry {
 
 /// What is known of a scan beside its entries.
 struct Held {
-  std::optional<SampleDigest> samples;  ///< nothing where it has none
-  /// Its passes, while a scan with a lower id and the same samples takes part in its place.
+  /// Its passes, while a scan with its samples takes part in its place.
   std::vector<StitchSurface> waiting;
 
   [[nodiscard]] bool waits() const { return !waiting.empty(); }

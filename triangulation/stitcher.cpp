@@ -3,7 +3,6 @@
 #include "triangulation/stitcher.h"
 
 #include <algorithm>
-#include <limits>
 #include <map>
 #include <optional>
 #include <set>
@@ -37,6 +36,7 @@ std::unexpected<Error> cancelled() {
 struct Stitcher::Impl {
   StitchOptions options;
   std::map<int, Held> held;          ///< all scans
+  KnownPrints prints;                ///< of these
   std::map<PassKey, Entry> entries;  ///< of those that take part: each has a pass 0
   std::set<PassKey> unpaired;        ///< came since settle()
   bool places_are_old = false;       ///< pairs have come or gone since weigh_places()
@@ -62,7 +62,11 @@ struct Stitcher::Impl {
       }
       ids.insert(scan.id);
     }
-    std::vector<Held> ready(ids.size());
+    struct Ready {
+      std::optional<ScanPrint> print;
+      std::vector<StitchSurface> passes;
+    };
+    std::vector<Ready> ready(ids.size());
     for (std::size_t first = 0; first < ready.size(); first += kSideBySide) {
       if (first > 0) {
         job.progress("triangulate grids", static_cast<double>(first) / static_cast<double>(ready.size()));
@@ -71,7 +75,7 @@ struct Stitcher::Impl {
           std::min(kSideBySide, ready.size() - first),
           [&](std::size_t k) {
             if (const PlacedScan& scan = scans[first + k]; !job.cancelled()) {
-              ready[first + k] = {sample_digest(*scan.grid), surfaces_of_passes(scan, options.surface, job)};
+              ready[first + k] = {scan_print(*scan.grid), surfaces_of_passes(scan, options.surface, job)};
             }
           },
           1);
@@ -80,30 +84,25 @@ struct Stitcher::Impl {
       }
     }
     for (std::size_t k = 0; k < ready.size(); ++k) {
-      held[scans[k].id] = std::move(ready[k]);
-      enter(scans[k].id);
+      prints.add(scans[k].id, std::move(ready[k].print));
+      held[scans[k].id].waiting = std::move(ready[k].passes);
     }
+    leave_out_copies();
     return ok;
   }
 
-  /// The scan with the lowest id, past `after`, of those with these samples.
-  [[nodiscard]] std::optional<int> first_with(const std::optional<SampleDigest>& samples,
-                                              int after = std::numeric_limits<int>::min()) const {
-    const auto found = std::find_if(held.upper_bound(after), held.end(), [&](const auto& scan) {
-      return samples && scan.second.samples == samples;
-    });
-    return found == held.end() ? std::nullopt : std::optional(found->first);
+  /// Of scans that are one measurement one takes part, the others wait.
+  void leave_out_copies() {
+    const std::vector<ScanCopy> copies = prints.copies();
+    for (const auto& [id, scan] : held) {
+      if (const bool is_copy = copied_from(copies, id).has_value(); is_copy != scan.waits()) {
+        is_copy ? step_out(id) : enter(id);
+      }
+    }
   }
 
-  /// Puts in a scan that waits; it goes on waiting where another with its samples has a lower id.
+  /// Puts in a scan that waits.
   void enter(int id) {
-    const std::optional<SampleDigest>& samples = held.at(id).samples;
-    if (samples && first_with(samples) != id) {
-      return;
-    }
-    if (const std::optional<int> copy = first_with(samples, id); copy && !held.at(*copy).waits()) {
-      step_out(*copy);
-    }
     std::vector<StitchSurface> passes = std::exchange(held.at(id).waiting, {});
     for (std::size_t pass = 0; pass < passes.size(); ++pass) {
       const PassKey key(id, static_cast<int>(pass));
@@ -235,6 +234,7 @@ struct Stitcher::Impl {
     }
     if (lets_go) {  // of what patches are not laid from
       held.clear();
+      prints.clear();
       for (auto& [key, entry] : entries) {
         entry.pairs.clear();
         StitchSurface& surface = entry.surface;
@@ -265,15 +265,13 @@ struct Stitcher::Impl {
     if (found == held.end()) {
       return false;
     }
-    const Held gone = std::move(found->second);
+    const bool took_part = !found->second.waits();
     held.erase(found);
-    if (gone.waits()) {
-      return true;
+    prints.remove(id);
+    if (took_part) {
+      erase_entries(id);
     }
-    erase_entries(id);
-    if (const std::optional<int> copy = first_with(gone.samples)) {
-      enter(*copy);
-    }
+    leave_out_copies();
     return true;
   }
 
@@ -317,13 +315,7 @@ bool Stitcher::remove(int id) {
 }
 
 std::vector<ScanCopy> Stitcher::copies() const {
-  std::vector<ScanCopy> out;
-  for (const auto& [id, scan] : impl_->held) {
-    if (scan.waits()) {
-      out.push_back({id, impl_->first_with(scan.samples).value_or(id)});
-    }
-  }
-  return out;
+  return impl_->prints.copies();
 }
 
 std::vector<int> Stitcher::without_surface() const {
@@ -368,6 +360,7 @@ Result<Mesh> Stitcher::mesh(const JobContext& job) const {
 Result<Mesh> Stitcher::take_mesh(const JobContext& job) {
   Result<Mesh> mesh = impl_->mesh(true, job);
   impl_->held.clear();
+  impl_->prints.clear();
   impl_->entries.clear();
   impl_->unpaired.clear();
   return mesh;

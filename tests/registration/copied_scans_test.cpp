@@ -9,6 +9,7 @@
 
 #include "registration/registrar.h"
 #include "tests/registration/support/height_field.h"
+#include "tests/support/other_forms.h"
 
 namespace dubsar {
 namespace {
@@ -138,15 +139,28 @@ TEST_F(CopiedScans, TheOneWithTheHighestNumberMayComeFirst) {
   }
 }
 
-TEST_F(CopiedScans, OneOtherSampleMakesAnotherScan) {
-  RangeGrid other = *grids()[1];
-  std::size_t i = other.size() / 2;
-  while (other.valid[i] == 0) {
-    ++i;
-  }
-  other.z[i] = std::nextafter(other.z[i], 10.0F);
+/// In the frame of the other: its pose holds of it.
+TEST_F(CopiedScans, MayBeWrittenOtherwise) {
   add({{0, 0}, {1, 1}});
-  registrar.add(7, std::make_shared<const RangeGrid>(other), nullptr, job);
+  const ScanPose before = pose(1);
+  registrar.add(7, std::make_shared<const RangeGrid>(test::rounded(test::transposed(*grids()[1]), 0.001)),
+                nullptr, job);
+  expect_one(pose(1), before);
+  expect_one(pose(7), pose(1));
+}
+
+TEST_F(CopiedScans, InAnotherFrameHaveAPoseOfTheirOwn) {
+  add({{0, 0}, {1, 1}});
+  const RigidTransform elsewhere = RigidTransform::from_twist({0, 0, 0.2}, {3, 2, 5});
+  registrar.add(7, std::make_shared<const RangeGrid>(test::moved(*grids()[1], elsewhere)), nullptr, job);
+  ASSERT_EQ(pose(7).status, PoseStatus::kRegistered);
+  const Eigen::Vector3d p(5, -5, 0);
+  EXPECT_LT((pose(7).model_from_scanner * (elsewhere * p) - pose(1).model_from_scanner * p).norm(), 0.1);
+}
+
+TEST_F(CopiedScans, OtherNoiseMakesAnotherScan) {
+  add({{0, 0}, {1, 1}});
+  registrar.add(7, scanned(bumpy(31), truth()[1], 77), nullptr, job);
   EXPECT_NE(pose(7).model_from_scanner.row_major(), pose(1).model_from_scanner.row_major());
 }
 

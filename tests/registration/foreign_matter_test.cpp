@@ -23,6 +23,7 @@
 #include "sim/scan_plan.h"
 #include "sim/scanner.h"
 #include "sim/tablet.h"
+#include "tests/support/other_forms.h"
 
 namespace dubsar {
 namespace {
@@ -123,8 +124,9 @@ class TrueScans {
     return out;
   }
   /// The same scan once more, where it is.
-  void copy(int id, int copy_id) {
-    const RangeGrid& grid = grids.at(id);
+  void copy(int id, int copy_id, bool otherwise_written = false) {
+    const RangeGrid& same = grids.at(id);
+    const RangeGrid grid = otherwise_written ? test::rounded(test::transposed(same), 0.001) : same;
     ScanPose pose = *std::ranges::find(poses, id, &ScanPose::id);
     pose.id = copy_id;
     poses.push_back(pose);
@@ -293,6 +295,22 @@ TEST(ForeignMatter, ACopyIsNoSecondWitness) {
   // One counts as soon as the first of them is taken out.
   std::erase_if(scans.poses, [](const ScanPose& pose) { return pose.id == 1; });
   EXPECT_EQ(scans.matter.find(scans.poses).back().id, 101);
+}
+
+TEST(ForeignMatter, NorIsACopyInAnotherForm) {
+  Scenes scenes;
+  scenes.gripped = [](int view) { return view == 1; };
+  TrueScans scans(scenes);
+  const std::vector<ForeignFound> once = scans.matter.find(scans.poses);
+  scans.copy(1, 101, true);  // as many would show the hand as look through it
+  scans.copy(2, 102, true);
+  const std::vector<ForeignFound> twice = scans.matter.find(scans.poses);
+  EXPECT_EQ(scans.matter.copies(), (std::vector<ScanCopy>{{101, 1}, {102, 2}}));
+  ASSERT_EQ(once.size(), 1U);
+  ASSERT_EQ(twice.size(), 1U);
+  EXPECT_EQ(twice[0].foreign_mm2, once[0].foreign_mm2);
+  EXPECT_EQ(twice[0].doubtful_mm2, once[0].doubtful_mm2);
+  EXPECT_EQ(twice[0].witnesses, once[0].witnesses);
 }
 
 TEST(ForeignMatter, LargeGridsAreJudgedByFewerSamples) {

@@ -12,6 +12,7 @@
 #include "planning/model_faces.h"
 #include "station/results.h"
 #include "tests/station/support/bumpy_scans.h"
+#include "tests/support/other_forms.h"
 
 namespace dubsar {
 namespace {
@@ -68,7 +69,8 @@ TEST(PlanningStage, ACopyIsTheScanThatItIsOf) {
     stage.add(scan);
     alone.add(scan);
   }
-  stage.add(prepare_scan(3, test::bumpy_scan(1), std::nullopt));
+  const RangeGrid written_otherwise = test::rounded(test::transposed(test::bumpy_scan(1)), 0.001);
+  stage.add(prepare_scan(3, written_otherwise, std::nullopt));
   JobContext job;
   const std::vector<ScanPose> of_three = poses_with(0.01);
   std::vector<ScanPose> of_four = of_three;

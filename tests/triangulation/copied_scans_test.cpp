@@ -5,6 +5,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "tests/support/other_forms.h"
 #include "tests/triangulation/support/ball_scans.h"
 
 namespace dubsar {
@@ -53,15 +54,43 @@ TEST(CopiedScans, WhatElseIsToldOfACopyMakesItNoOther) {
   expect_same(stitched(set), stitched(once));
 }
 
-TEST(CopiedScans, OneOtherSampleMakesAnotherScan) {
+/// Averaged as if it were evidence of its own, its noise would count twice.
+TEST(CopiedScans, ACopyInAnotherFormIsNoMoreEvidence) {
+  const test::ScanSet once = ball();
   test::ScanSet set = ball();
-  RangeGrid other = set.grids[1];
-  std::size_t i = other.size() / 2;
-  while (other.valid[i] == 0) {
-    ++i;
-  }
-  other.z[i] = std::nextafter(other.z[i], 10.0F);
-  set.add(std::move(other), set.placed[1].model_from_scanner);
+  const RigidTransform moved = RigidTransform::from_twist({0.3, -0.2, 0.5}, {10, 20, -300});
+  set.add(test::rounded(test::transposed(set.grids[1]), 0.001), set.placed[1].model_from_scanner);
+  set.add(test::moved(set.grids[2], moved), set.placed[2].model_from_scanner * moved.inverse());
+  set.add(test::reversed(test::cropped(set.grids[3], 0.1, 0.9)), set.placed[3].model_from_scanner);
+  expect_same(stitched(set), stitched(once));
+}
+
+/// It goes as soon as the whole comes, and comes in when that is taken out.
+TEST(CopiedScans, APartOfAScanIsNoMoreEvidence) {
+  test::ScanSet set = ball();
+  PlacedScan whole = with_id(set.placed[1], 8);
+  set.grids.push_back(test::cropped(set.grids[1], 0.1, 0.9));
+  set.flags.push_back(test::sparse_flags(set.grids.back()));
+  set.placed[1].grid = &set.grids.back();
+  set.placed[1].flags = &set.flags.back();
+  const JobContext job;
+  Stitcher stitcher;
+  ASSERT_TRUE(stitcher.add(set.placed, job));
+  const Mesh of_the_part = stitched(set);
+  EXPECT_THAT(stitcher.copies(), IsEmpty());
+  ASSERT_TRUE(stitcher.add(whole, job));
+  EXPECT_THAT(stitcher.copies(), ElementsAre(ScanCopy{1, 8}));
+  test::ScanSet of_the_whole = ball();
+  of_the_whole.placed[1].id = 8;
+  expect_same(stitcher.mesh(), stitched(of_the_whole));
+  EXPECT_TRUE(stitcher.remove(8));
+  EXPECT_THAT(stitcher.copies(), IsEmpty());
+  expect_same(stitcher.mesh(), of_the_part);
+}
+
+TEST(CopiedScans, OtherNoiseMakesAnotherScan) {
+  test::ScanSet set = ball();
+  set.add(test::ball_grid(0.15, 0.01, 77), set.placed[1].model_from_scanner);
   const JobContext job;
   Stitcher stitcher;
   ASSERT_TRUE(stitcher.add(set.placed, job));
