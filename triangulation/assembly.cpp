@@ -73,9 +73,10 @@ Mesh assemble(const std::vector<OwnedScan>& scans, const AssemblyOptions& option
     std::vector<Vector3f> found;
     for (const OwnedScan& scan : scans) {
       const StitchSurface& s = *scan.surface;
-      const Vector3f p = (s.scanner_from_model * p_mm.cast<double>()).cast<float>();
+      const Vector3f p = (s.scanner_from_model * s.as_posed(p_mm).cast<double>()).cast<float>();
       if (const GridLookup::Found nearest = s.lookup->find_nearest(p, radius_mm); nearest.sample >= 0) {
-        found.push_back((s.scanner_from_model.inverse() * nearest.point_mm.cast<double>()).cast<float>());
+        found.push_back(
+            s.moved_back((s.scanner_from_model.inverse() * nearest.point_mm.cast<double>()).cast<float>()));
       }
     }
     return found;

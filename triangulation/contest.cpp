@@ -248,7 +248,8 @@ bool NodeContest::is_taken_by(std::size_t k, std::size_t i) {
   if (from.sample < 0) {
     return false;
   }
-  const std::int64_t likely = likely_sample(from, *other.surface, scan_->surface->points[i]);
+  const std::int64_t likely =
+      likely_sample(from, *other.surface, scan_->pairs[k]->on_other(scan_->surface->points[i]));
   if (likely >= 0 && other.near_kept[static_cast<std::size_t>(likely)] == kAllAroundKept &&
       may_pair(*scan_->surface, i, *other.surface, static_cast<std::size_t>(likely), *scan_->pairs[k])) {
     return true;
@@ -263,8 +264,9 @@ bool NodeContest::is_taken_by(std::size_t k, std::size_t i) {
   const Window window(other, j);
   const auto clearance = static_cast<float>(options_->clearance_factor *
                                             std::max(scan_->surface->spacing_mm, other.surface->spacing_mm));
-  const Vector3f& p =
-      scan_->fused->slot[i] == FusedSamples::kNone ? scan_->surface->points[i] : scan_->fused->point(i);
+  const Vector3f p = scan_->fused->slot[i] == FusedSamples::kNone
+                         ? scan_->surface->moved_back(scan_->surface->points[i])
+                         : scan_->fused->point(i);
   bool taken = false;
   const Vector3f n = other.surface->normal(static_cast<std::size_t>(j));
   for (int r = window.row_lo; r <= window.row_hi && !taken; ++r) {

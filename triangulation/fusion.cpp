@@ -46,9 +46,13 @@ float faded(std::uint8_t rim, float feather) {
 }
 
 /// Pairs::feather, longer where one of the two hardly counts beside the other: it takes over only where the
-/// other has all but faded out, and so short a way would show the step.
+/// other has all but faded out, and so short a way would show the step. None where both are taken to one
+/// place.
 float feather_between(const StitchSurface& a, const StitchSurface& b, const Pairs& pairs) {
   const auto [least, most] = std::minmax(a.pose_share, b.pose_share);
+  if (!pairs.onto.is_none()) {
+    return 0;
+  }
   return std::min(pairs.feather * std::sqrt(most / least), static_cast<float>(kMostRim - 1));
 }
 
@@ -96,6 +100,7 @@ class Averager {
     return q.weight * on.pose_share * faded(q.rim, feather_between(from_, on, *pairs_[other]));
   }
   void write_average(const Course& course, std::size_t at, FusedSamples& out) const;
+  [[nodiscard]] float moved2_mm2(const Course& course, float weight_sum) const;
   [[nodiscard]] float sigma_mm(const Course& course, float shift_mm, float weight_sum) const;
 
   const StitchSurface& from_;
@@ -127,16 +132,17 @@ Projection Averager::meeting(const Course& course, const PairStart& start, std::
   const auto within_reach = [&](const Projection& q) {
     return course.tilt * std::abs(q.along_mm) <= pairs.reach_mm;
   };
-  const auto [row, col] = start.place_of(course.line.p);
-  Projection q = project(course.line, on, row, col);
+  Line line = course.line;
+  line.p = pairs.on_other(line.p);
+  const auto [row, col] = start.place_of(line.p);
+  Projection q = project(line, on, row, col);
   if (q.weight > 0 && !(within_reach(q) && course.normal.dot(on.normal(q.sample)) > pairs.min_normal_cos)) {
     // Another fold of the surface: from the nearest sample that looks the same way there is a way to the
     // right one.
     const std::int64_t j = pair_of(from_, course.sample, start, on, pairs);
-    q = j < 0
-            ? Projection()
-            : project(course.line, on, static_cast<float>(on.lattice.sample_row(static_cast<std::size_t>(j))),
-                      static_cast<float>(on.lattice.sample_col(static_cast<std::size_t>(j))));
+    q = j < 0 ? Projection()
+              : project(line, on, static_cast<float>(on.lattice.sample_row(static_cast<std::size_t>(j))),
+                        static_cast<float>(on.lattice.sample_col(static_cast<std::size_t>(j))));
   }
   return within_reach(q) ? q : Projection();
 }
@@ -160,12 +166,25 @@ void Averager::write_average(const Course& course, std::size_t at, FusedSamples&
     sparse = sparse && !q.well_sampled;
   }
   const float shift_mm = shift_sum / weight_sum;
-  out.points[at] = course.line.p + shift_mm * course.line.n;
+  out.points[at] = from_.moved_back(course.line.p) + shift_mm * course.line.n;
   out.sigma_mm[at] = sigma_mm(course, shift_mm, weight_sum);
-  out.reliability[at] =
-      (1.0F - doubt) / (1.0F + square(out.sigma_mm[at] / static_cast<float>(from_.spacing_mm)));
+  const float off2 = square(out.sigma_mm[at]) + moved2_mm2(course, weight_sum);
+  out.reliability[at] = (1.0F - doubt) / (1.0F + off2 / square(static_cast<float>(from_.spacing_mm)));
   out.sparse[at] = sparse ? 1 : 0;
   out.scans[at] = static_cast<std::uint8_t>(std::min<std::size_t>(scans, 255));
+}
+
+/// How far scans have been taken along the normal, as their errors would average: that they fit there is no
+/// proof of it.
+float Averager::moved2_mm2(const Course& course, float weight_sum) const {
+  const auto moved2 = [&](const StitchSurface& s, float weight) {
+    return s.back.is_none() ? 0.0F : square(weight * s.back.at(course.line.p).dot(course.normal));
+  };
+  float sum = moved2(from_, own_weight(course.sample));
+  for (const auto& [k, q] : found_) {
+    sum += moved2(*others_[k], weight_of(k, q));
+  }
+  return sum / square(weight_sum);
 }
 
 /// Of the average: noise and poses of different scans are independent, passes of one scan share its pose, and
@@ -194,7 +213,8 @@ float Averager::sigma_mm(const Course& course, float shift_mm, float weight_sum)
   // That it stands off by as much says nothing against the sample.
   chi2 += square(course.tilt * shift_mm) / (own_variance + square(bulge_sum / weight_sum));
   const float excess = found_.empty() ? 1.0F : std::max(1.0F, chi2 / static_cast<float>(found_.size()));
-  return std::sqrt(excess * (variance_sum + square(bulge_sum))) / weight_sum;
+  const float alone = excess * (variance_sum + square(bulge_sum)) / square(weight_sum);
+  return std::sqrt(alone + from_.together_variance_mm2);
 }
 
 void Averager::average(std::size_t at, FusedSamples& out) {

@@ -23,6 +23,10 @@ constexpr double kLeastOfSpacing = 0.2;
 constexpr double kSignificance = 4.0;
 /// Motions are held to be no larger than this, unless steps say so.
 constexpr double kUsualOfSpacing = 4.0;
+/// So much of a motion may be wrong, and so many times the variance of a mean is that of where the scans are
+/// taken together; by simulated tablets with poses that are off by 1 to 4 µ.
+constexpr double kLeftOfMotion = 0.2;
+constexpr double kOfMean = 2.0;
 
 /// Scans that hang together by links, and the motions about one place, turns × `arm_mm`, that take each to
 /// where the others have it.
@@ -60,28 +64,33 @@ class Group {
     }
   }
 
-  void write_misplacements(std::vector<double>& out) {
+  void write_misplacements(std::vector<Misplacement>& out) {
     constexpr int kRounds = 10;
     std::vector<MotionMatrix> moments(members_.size());
     for (std::size_t k = 0; k < members_.size(); ++k) {
       moments[k] = moments_of(scan(k));
     }
     std::vector<double> sizes(members_.size(), kUsualOfSpacing * spacing_mm_);
+    Eigen::VectorXd motions;
     for (int round = 0; round < kRounds; ++round) {
-      const Eigen::VectorXd motions = solved(sizes);
+      motions = solved(sizes);
       for (std::size_t k = 0; k < members_.size(); ++k) {
         const Motion motion = motions.segment<6>(at(k));
         sizes[k] = std::sqrt(3.0 * std::max(0.0, motion.dot(moments[k] * motion)));
       }
     }
-    // Nothing tells how all lie together: the mean of so many errors.
+    // Nothing tells how all lie together: the mean of so many errors, and what the fewest motions differ by.
     const double count = static_cast<double>(members_.size());
-    const double together2 = std::pow(median_of(sizes), 2) / (count - 1);
+    const double together2 = kOfMean * std::pow(median_of(sizes), 2) / (count - 1);
     for (std::size_t k = 0; k < members_.size(); ++k) {
       const double error2 = 3.0 * (moments[k] * inverse_of(k)).trace();
       if (sizes[k] > std::sqrt(3.0) * kLeastOfSpacing * scan(k).spacing_mm &&
           sizes[k] * sizes[k] > kSignificance * kSignificance * error2) {
-        out[members_[k]] = std::sqrt(sizes[k] * sizes[k] + together2);
+        const Motion motion = motions.segment<6>(at(k));
+        out[members_[k]] = {{about_mm_.cast<float>(), (motion.head<3>() / arm_mm_).cast<float>(),
+                             motion.tail<3>().cast<float>()},
+                            std::sqrt(kLeftOfMotion * kLeftOfMotion * sizes[k] * sizes[k] + error2),
+                            std::sqrt(together2)};
       }
     }
   }
@@ -157,9 +166,9 @@ class Group {
 
 }  // namespace
 
-std::vector<double> misplacements_mm(std::span<const StitchSurface* const> scans,
-                                     std::span<const PoseLink> links) {
-  std::vector<double> out(scans.size(), 0.0);
+std::vector<Misplacement> misplacements(std::span<const StitchSurface* const> scans,
+                                        std::span<const PoseLink> links) {
+  std::vector<Misplacement> out(scans.size());
   DisjointSets sets(scans.size());
   for (const PoseLink& link : links) {
     if (link.step.is_known()) {

@@ -16,12 +16,11 @@ struct PoseLink {
   PoseStep step;
 };
 
-/// How far each scan's pose seems to be off, as the standard deviation of a displacement in space (mm, as
-/// PlacedScan::sigma_mm): from the motions of all scans that explain the steps between them best, of these
-/// the ones that move as few scans as possible. 0 where that does not stand well above its own error, or is
-/// a small part of the spacing. A pass of a stage may stand for its scan. The order of `links` decides about
-/// rounding alone.
-[[nodiscard]] std::vector<double> misplacements_mm(std::span<const StitchSurface* const> scans,
-                                                   std::span<const PoseLink> links);
+/// How each scan's pose seems to be off: from the motions of all scans that explain the steps between them
+/// best, of these the ones that move as few scans as possible. Nothing where that does not stand well above
+/// its own error, or is a small part of the spacing. A pass of a stage may stand for its scan. The order of
+/// `links` decides about rounding alone.
+[[nodiscard]] std::vector<Misplacement> misplacements(std::span<const StitchSurface* const> scans,
+                                                      std::span<const PoseLink> links);
 
 }  // namespace dubsar

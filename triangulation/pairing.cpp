@@ -102,6 +102,42 @@ std::int64_t nearest_sample(const StitchSurface& to, const Vector3f& p, float re
   return distance2 <= reach_mm * reach_mm ? static_cast<std::int64_t>(at) : -1;
 }
 
+/// Fills in `match` and `nodes`.
+void find_matches(const StitchSurface& from, const StitchSurface& to, Pairs& pairs, const JobContext& job) {
+  pairs.nodes = 0;
+  pairs.match.assign(from.lattice.size(), -1);
+  Eigen::AlignedBox3f box = to.box;
+  if (box.isEmpty()) {
+    return;
+  }
+  box.min().array() -= pairs.reach_mm;
+  box.max().array() += pairs.reach_mm;
+  pairs.nodes = parallel_reduce_ordered(
+      pairs.match.size(), 512, std::size_t{0},
+      [&](std::size_t begin, std::size_t end) {
+        std::size_t count = 0;
+        for (std::size_t node = begin; node < end && !job.cancelled(); ++node) {
+          const std::int32_t sample = from.node_sample[node];
+          if (sample < 0) {
+            continue;
+          }
+          const auto i = static_cast<std::size_t>(sample);
+          const Vector3f p = pairs.on_other(from.points[i]);
+          // A scan cannot have seen what faces away from it.
+          if (!box.contains(p) || !may_see(to.view, p, from.normal(i))) {
+            continue;
+          }
+          const std::int64_t j = nearest_sample(to, p, pairs.reach_mm);
+          if (j >= 0 && from.normal(i).dot(to.normal(static_cast<std::size_t>(j))) > pairs.min_normal_cos) {
+            pairs.match[node] = static_cast<std::int32_t>(j);
+            ++count;
+          }
+        }
+        return count;
+      },
+      [](std::size_t& total, std::size_t part) { total += part; });
+}
+
 }  // namespace
 
 double mismatch_mm(const StitchSurface& from, const StitchSurface& to, double reach_mm) {
@@ -172,36 +208,14 @@ Pairs find_pairs(const StitchSurface& from, const StitchSurface& to, double reac
   pairs.other_id = to.id;
   pairs.reach_mm = static_cast<float>(reach_mm);
   pairs.min_normal_cos = static_cast<float>(options.min_normal_cos);
-  pairs.match.assign(from.lattice.size(), -1);
-  Eigen::AlignedBox3f box = to.box;
-  if (box.isEmpty()) {
-    return pairs;
-  }
-  box.min().array() -= pairs.reach_mm;
-  box.max().array() += pairs.reach_mm;
-  pairs.nodes = parallel_reduce_ordered(
-      pairs.match.size(), 512, std::size_t{0},
-      [&](std::size_t begin, std::size_t end) {
-        std::size_t count = 0;
-        for (std::size_t node = begin; node < end && !job.cancelled(); ++node) {
-          const std::int32_t sample = from.node_sample[node];
-          if (sample < 0) {
-            continue;
-          }
-          const auto i = static_cast<std::size_t>(sample);
-          // A scan cannot have seen what faces away from it.
-          if (!box.contains(from.points[i]) || !may_see(to.view, from.points[i], from.normal(i))) {
-            continue;
-          }
-          const std::int64_t j = nearest_sample(to, from.points[i], pairs.reach_mm);
-          if (j >= 0 && from.normal(i).dot(to.normal(static_cast<std::size_t>(j))) > pairs.min_normal_cos) {
-            pairs.match[node] = static_cast<std::int32_t>(j);
-            ++count;
-          }
-        }
-        return count;
-      },
-      [](std::size_t& total, std::size_t part) { total += part; });
+  find_matches(from, to, pairs, job);
+  return pairs;
+}
+
+Pairs find_pairs_anew(const StitchSurface& from, const StitchSurface& to, Pairs pairs,
+                      const SmallMotion& onto) {
+  pairs.onto = onto;
+  find_matches(from, to, pairs, {});
   return pairs;
 }
 
@@ -236,7 +250,8 @@ PairStart pair_start(const StitchSurface& from, std::size_t node, const StitchSu
 
 bool may_pair(const StitchSurface& from, std::size_t sample, const StitchSurface& to, std::size_t other,
               const Pairs& pairs) {
-  return (from.points[sample] - to.points[other]).squaredNorm() <= pairs.reach_mm * pairs.reach_mm &&
+  return (pairs.on_other(from.points[sample]) - to.points[other]).squaredNorm() <=
+             pairs.reach_mm * pairs.reach_mm &&
          from.normal(sample).dot(to.normal(other)) > pairs.min_normal_cos;
 }
 
@@ -251,7 +266,7 @@ std::int64_t likely_sample(const PairStart& start, const StitchSurface& to, cons
 
 std::int64_t pair_of(const StitchSurface& from, std::size_t sample, const PairStart& start,
                      const StitchSurface& to, const Pairs& pairs) {
-  const Vector3f& p = from.points[sample];
+  const Vector3f p = pairs.on_other(from.points[sample]);
   float distance2 = 0;
   const std::size_t at = walk(to, jump(to, start, p), p, distance2);
   return may_pair(from, sample, to, at, pairs) ? static_cast<std::int64_t>(at) : -1;

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/job.h"
+#include "triangulation/small_motion.h"
 #include "triangulation/stitch_surface.h"
 
 namespace dubsar {
@@ -29,8 +30,15 @@ struct Pairs {
   /// Samples over which the say of either scan fades out towards its rim: none where the poses agree to
   /// within the noise, more the farther the surfaces lie apart, so that no step shows where a scan ends.
   float feather = 0;
+  /// From where the pose of this scan puts a place to where that of the other does, as far as they are known
+  /// to be off: there its pair is looked for.
+  SmallMotion onto;
   std::size_t nodes = 0;            ///< with a pair
   std::vector<std::int32_t> match;  ///< by node: the other scan's usable sample nearest to node_sample, or -1
+
+  [[nodiscard]] Eigen::Vector3f on_other(const Eigen::Vector3f& p_mm) const {
+    return onto.is_none() ? p_mm : Eigen::Vector3f(p_mm + onto.at(p_mm));
+  }
 };
 
 /// How far apart the two surfaces lie, measured on a spread of samples along the normal; robust (median).
@@ -51,6 +59,10 @@ struct Pairs {
 /// Of a job that is cancelled some are missing.
 [[nodiscard]] Pairs find_pairs(const StitchSurface& from, const StitchSurface& to, double reach_mm,
                                const PairingOptions& options, const JobContext& job = {});
+
+/// The same with another Pairs::onto.
+[[nodiscard]] Pairs find_pairs_anew(const StitchSurface& from, const StitchSurface& to, Pairs pairs,
+                                    const SmallMotion& onto);
 
 /// Where pair_of() sets out from for the samples of a node, and how the other grid goes on around there.
 struct PairStart {

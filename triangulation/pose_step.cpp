@@ -80,11 +80,13 @@ class Measuring {
     }
     const Vector3f& p = from_.points[i];
     const Vector3f n = from_.normal(i);
-    const auto [row, col] = start.place_of(p);
-    const Projection q = project(Line(p, n), to_, row, col);
+    const Vector3f there = pairs_.on_other(p);
+    const auto [row, col] = start.place_of(there);
+    const Projection q = project(Line(there, n), to_, row, col);
     if (q.weight > 0 && q.well_sampled && q.rim >= kLeastRim && std::abs(q.along_mm) <= pairs_.reach_mm &&
         is_seen_steeply(to_, q.sample) && n.dot(to_.normal(q.sample)) > kLeastNormalCos) {
-      found.push_back({motion_row(p.cast<double>(), sign_ * n.cast<double>(), about_mm_), q.along_mm});
+      const float apart_mm = q.along_mm + n.dot(there - p);
+      found.push_back({motion_row(p.cast<double>(), sign_ * n.cast<double>(), about_mm_), apart_mm});
     }
   }
 

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <functional>
+#include <utility>
 
 #include "core/parallel.h"
 #include "triangulation/misplacement.h"
@@ -40,24 +42,58 @@ std::optional<FoundPairs> pairs_between(const PassKey& key, const StitchSurface&
   return found;
 }
 
+namespace {
+
+/// Pairs are where the other scan has the same place, as the motions say, not where its pose puts it.
+void look_for_pairs_anew(Entries& entries, const std::function<SmallMotion(const PassKey&)>& back_of) {
+  for (auto& [key, entry] : entries) {
+    for (auto& [other_key, pairs] : entry.pairs) {
+      const SmallMotion onto =
+          other_key.first == key.first ? SmallMotion() : back_of(key) - back_of(other_key);
+      if (onto == pairs.onto) {
+        continue;
+      }
+      entry.mark_changed(pairs);
+      pairs = find_pairs_anew(entry.surface, entries.at(other_key).surface, std::move(pairs), onto);
+      entry.mark_changed(pairs);
+    }
+  }
+}
+
+}  // namespace
+
 void weigh_places(Entries& entries) {
+  // Distances between the same places say more than those between places that poses put beside each other.
+  constexpr int kRounds = 3;
   std::vector<const StitchSurface*> scans;
   std::map<int, std::size_t> place;  // by scan: passes share its pose
-  std::vector<PoseLink> links;
   for (const auto& [key, entry] : entries) {
     if (key.second == 0) {
       place[key.first] = scans.size();
       scans.push_back(&entry.surface);
     }
   }
-  for (const auto& [key, entry] : entries) {
-    for (const auto& [other_key, step] : entry.steps) {
-      links.push_back({place.at(key.first), place.at(other_key.first), step});
+  std::vector<Misplacement> off;
+  const auto back_of = [&](const PassKey& key) { return off[place.at(key.first)].back; };
+  for (int round = 0; round < kRounds; ++round) {
+    std::vector<PoseLink> links;
+    for (const auto& [key, entry] : entries) {
+      for (const auto& [other_key, step] : entry.steps) {
+        const Entry& other = entries.at(other_key);
+        links.push_back({place.at(key.first), place.at(other_key.first),
+                         round == 0 ? step
+                                    : pose_step(entry.surface, entry.pairs.at(other_key), other.surface,
+                                                other.pairs.at(key))});
+      }
+    }
+    off = misplacements(scans, links);
+    look_for_pairs_anew(entries, back_of);
+    if (std::ranges::all_of(off, [](const Misplacement& m) { return m.back.is_none(); })) {
+      break;
     }
   }
-  const std::vector<double> off_mm = misplacements_mm(scans, links);
   for (auto& [key, entry] : entries) {
-    if (!entry.surface.take_misplacement(off_mm[place.at(key.first)])) {
+    if (!entry.surface.take_misplacement(off[place.at(key.first)])) {
       continue;
     }
     entry.mark_all_changed();

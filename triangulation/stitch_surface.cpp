@@ -336,11 +336,15 @@ float StitchSurface::pose_variance_mm2() const {
   return along_mm * along_mm;
 }
 
-bool StitchSurface::take_misplacement(double misplacement_mm) {
-  const bool says_more = misplacement_mm > 0 && !(misplacement_mm <= told_pose_sigma_mm);
-  const double before_mm = std::exchange(pose_sigma_mm, says_more ? misplacement_mm : told_pose_sigma_mm);
+bool StitchSurface::take_misplacement(const Misplacement& misplacement) {
+  const SmallMotion before = std::exchange(back, misplacement.back);
+  const double before_mm =
+      std::exchange(pose_sigma_mm, back.is_none() ? told_pose_sigma_mm : misplacement.left_mm);
+  const auto together_mm = static_cast<float>(misplacement.together_mm);
+  together_variance_mm2 = together_mm * together_mm / 3.0F;
   pose_share = 1.0F / (1.0F + pose_variance_mm2() * weight_of_best);
-  return pose_sigma_mm != before_mm && !(std::isnan(pose_sigma_mm) && std::isnan(before_mm));
+  return back != before ||
+         (pose_sigma_mm != before_mm && !(std::isnan(pose_sigma_mm) && std::isnan(before_mm)));
 }
 
 StitchSurface make_scan_surface(const PlacedScan& scan, const StitchSurfaceOptions& options,

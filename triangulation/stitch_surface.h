@@ -15,6 +15,7 @@
 #include "triangulation/grid_triangulation.h"
 #include "triangulation/lattice.h"
 #include "triangulation/packed_normal.h"
+#include "triangulation/small_motion.h"
 
 namespace dubsar {
 
@@ -36,13 +37,24 @@ enum UsableBit : std::uint8_t {
   kUsableSparse = 2,  ///< and sparse
 };
 
+/// How a scan's pose seems to be off.
+struct Misplacement {
+  SmallMotion back;    ///< takes the scan to where the others have it; none: the pose is not known to be off
+  double left_mm = 0;  ///< standard deviation in space, as PlacedScan::sigma_mm, of where that takes it
+  double together_mm = 0;  ///< the same of what all scans share, which no overlap tells
+};
+
 /// One placed scan made ready for stitching: its samples in the model frame, the triangles of its grid, and
 /// how far each sample is to be trusted. Arrays are [rows*cols] of the grid where nothing else is said. It
 /// holds all that stitching needs of a scan, 27 bytes a sample, 30 with colours: the grid itself may go.
 struct StitchSurface {
   int id = 0;
   double told_pose_sigma_mm = 0;  ///< as it came
-  double pose_sigma_mm = 0;       ///< that, or what the overlaps with other scans say, if that is more
+  double pose_sigma_mm = 0;       ///< that, or what the overlaps with other scans say of `back`
+  /// From where its pose puts it to where the other scans have it: there it lies in the mesh. None where its
+  /// pose is not known to be off.
+  SmallMotion back;
+  float together_variance_mm2 = 0;  ///< along any direction, of Misplacement::together_mm
   double spacing_mm = 0;
   double noise_mm = 0;  ///< of a sample along the view
   /// × 1 / weight(): the variance of a sample along the normal, mm², by its noise alone.
@@ -83,9 +95,16 @@ struct StitchSurface {
   }
   /// The pose's error is one of displacement in space; a third of its square lies along any one direction.
   [[nodiscard]] float pose_variance_mm2() const;
-  /// How much the pose is off by what the overlaps say (0: nothing); what was told counts if that is more.
-  /// False where that changes nothing.
-  bool take_misplacement(double misplacement_mm);
+  /// From `points` to the mesh, but for averaging.
+  [[nodiscard]] Eigen::Vector3f moved_back(const Eigen::Vector3f& p_mm) const {
+    return back.is_none() ? p_mm : Eigen::Vector3f(p_mm + back.at(p_mm));
+  }
+  /// The way there; so small a turn is the same from either end.
+  [[nodiscard]] Eigen::Vector3f as_posed(const Eigen::Vector3f& p_mm) const {
+    return back.is_none() ? p_mm : Eigen::Vector3f(p_mm - back.at(p_mm));
+  }
+  /// What the overlaps say; where they say nothing, what was told counts. False where that changes nothing.
+  bool take_misplacement(const Misplacement& misplacement);
   /// Where its cells are; it holds no normals.
   [[nodiscard]] GridSurface surface() const {
     return {lattice.rows, lattice.cols, spacing_mm, points, {}, view};

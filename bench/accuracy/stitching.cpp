@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright The Dubsar developers
 //
-//   dubsar-stitching tablet [--seed S --spacing 0.05 --noise 0.02 --views 12 --pose-error 0 --tablets N]
-//     simulated scans, true poses: how far the mesh's vertices lie from the true surface, everywhere and at
-//     wedge edges; how much of the surface it holds; whether its uncertainties are true; its topology
+//   dubsar-stitching tablet [--seed S --spacing 0.05 --noise 0.02 --views 12 --pose-error 0 --scans-off 12
+//   --tablets N]
+//     simulated scans, true poses or (the first so many) off by a shift of that length: how far the mesh's
+//     vertices lie from the true surface, everywhere and at wedge edges; how much of the surface it holds;
+//     whether its uncertainties are true; how crumpled it is; its topology
 //   dubsar-stitching bunny FOLDER
 //     published scans with their published poses (the .conf of the folder), the bunny or any other: input
 //     sample to mesh and what perfect averaging would leave, topology, shape, time; boundary beside that of
@@ -35,6 +37,7 @@
 #include "core/parallel.h"
 #include "core/random.h"
 #include "core/stage_times.h"
+#include "core/units.h"
 #include "formats/grid_reader.h"
 #include "formats/mesh_io.h"
 #include "formats/poses_conf.h"
@@ -56,6 +59,7 @@ struct Arguments {
   double noise_mm = 0.02;
   int views = 12;
   double pose_error_mm = 0;
+  int scans_off = 1 << 20;
   double width_mm = 0;
   std::string folder;
   std::string out;
@@ -122,6 +126,26 @@ void print_boundary(const Mesh& mesh, const Mesh& reference, double away_mm) {
   std::printf("  boundary %.1f mm, %.1f mm of it where the reference is closed\n", all_mm, away_sum_mm);
 }
 
+/// Between faces that share an edge, degrees.
+std::vector<double> folds_deg(const Mesh& mesh) {
+  std::map<std::pair<std::uint32_t, std::uint32_t>, Vector3f> normal_beyond;
+  std::vector<double> folds;
+  for (const auto& f : mesh.faces) {
+    const Vector3f& a = mesh.positions[f[0]];
+    const Vector3f n = (mesh.positions[f[1]] - a).cross(mesh.positions[f[2]] - a).normalized();
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::uint32_t from = f[k], to = f[(k + 1) % 3];
+      if (const auto found = normal_beyond.find({to, from}); found != normal_beyond.end()) {
+        const double cosine = std::clamp(static_cast<double>(n.dot(found->second)), -1.0, 1.0);
+        folds.push_back(deg_from_rad(std::acos(cosine)));
+      } else {
+        normal_beyond[{from, to}] = n;
+      }
+    }
+  }
+  return folds;
+}
+
 std::vector<PlacedScan> cleared(const std::vector<std::shared_ptr<const RangeGrid>>& grids,
                                 const std::vector<RigidTransform>& poses, double sigma_mm,
                                 std::vector<SampleFlags>& flags, ClearedMap& map) {
@@ -158,7 +182,7 @@ int tablet(const Arguments& args, std::uint64_t seed) {
   for (const TrueScan& scan : scans) {
     grids.push_back(scan.grid);
     RigidTransform pose = scan.tablet_from_scanner;
-    if (args.pose_error_mm > 0) {
+    if (args.pose_error_mm > 0 && static_cast<int>(poses.size()) < args.scans_off) {
       const Eigen::Vector3d shift = random.normal3();
       pose.translation_mm += args.pose_error_mm * shift.normalized();
     }
@@ -229,6 +253,9 @@ int tablet(const Arguments& args, std::uint64_t seed) {
       z2 / count, 100 * static_cast<double>(within1) / count, 100 * static_cast<double>(within2) / count,
       100 * static_cast<double>(within3) / count,
       std::accumulate(mesh->reliability.begin(), mesh->reliability.end(), 0.0) / count);
+  const std::vector<double> folds = folds_deg(*mesh);
+  std::printf("\n  folds between faces: RMS %.2f degrees, beyond 60 %.2f %%", rms(folds),
+              100 * (1 - share_within(folds, 60)));
   const MeshQuery model(*mesh);
   // The vertices of the true mesh are spread evenly over the surface.
   const std::vector<double> to_model = distances_mm(truth->mesh.positions, model, 1.0);
@@ -370,6 +397,7 @@ int main(int argc, char** argv) {
   sim->add_option("--views", args.views);
   sim->add_option("--width", args.width_mm);
   sim->add_option("--pose-error", args.pose_error_mm);
+  sim->add_option("--scans-off", args.scans_off);
   sim->add_option("-o", args.out);
   auto* real = app.add_subcommand("bunny");
   real->add_option("folder", args.folder)->required()->check(CLI::ExistingDirectory);

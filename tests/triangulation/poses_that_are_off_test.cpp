@@ -10,6 +10,7 @@
 #include <limits>
 #include <utility>
 
+#include "core/random.h"
 #include "sim/scanner.h"
 #include "tests/triangulation/support/ball_scans.h"
 #include "tests/triangulation/support/evenly_spread.h"
@@ -103,6 +104,38 @@ TEST(PosesThatAreOff, OneSaysSoInSigmaAndReliabilityThoughNobodyToldIt) {
   EXPECT_LT(alone.ratio, 1.5);
   EXPECT_GT(alone.ratio, 0.5);
   EXPECT_LT(alone.reliability, found(stitched(ball_with_one_off({0, 0, 0})), 1, 1).reliability - 0.03);
+}
+
+TEST(PosesThatAreOff, OneIsLaidWhereTheOthersHaveIt) {
+  const double true_mm = found(stitched(ball_with_one_off({0, 0, 0})), 1, 255).error_mm;
+  EXPECT_LT(found(stitched(ball_with_one_off(kOff)), 1, 255).error_mm, 1.5 * true_mm);
+}
+
+TEST(PosesThatAreOff, AllOfThemStillGiveOneClosedSurface) {
+  constexpr int kScans = 12;
+  constexpr double kShiftMm = 0.4;  // of four spacings
+  const test::SimulatedTablet tablet({12, 9, 5});
+  sim::ScannerOptions options;
+  options.spacing_mm = 0.1;
+  options.noise_mm = 0.02;
+  const sim::TriangulationScanner scanner(options);
+  test::ScanSet set;
+  JobContext job;
+  Random random(5);
+  for (int k = 0; k < kScans; ++k) {
+    RigidTransform pose = test::tablet_from_scanner(k, kScans);
+    auto grid = scanner.scan_grid(tablet.scene(), pose, static_cast<std::uint64_t>(k) + 1, job);
+    ASSERT_TRUE(grid.has_value());
+    pose.translation_mm += kShiftMm * random.normal3().normalized();
+    set.add(std::move(*grid), pose);
+  }
+  const Mesh mesh = stitched(set);
+  const MeshReport report = check_mesh(mesh);
+  EXPECT_TRUE(report.is_manifold());
+  EXPECT_EQ(report.self_intersections, 0U);
+  EXPECT_EQ(report.components, 1U);
+  EXPECT_LT(report.boundary_length_mm, 20.0);
+  EXPECT_GT(std::ranges::count_if(holding(set).overlaps(), [](const auto& o) { return o.is_off(); }), 6);
 }
 
 TEST(PosesThatAreOff, OneHardlyMovesTheOthers) {
