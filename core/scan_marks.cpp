@@ -79,15 +79,21 @@ class Surroundings {
 
   /// How far a sample stands out of the four beside it, mm; kMissing where one of them is.
   [[nodiscard]] float stands_out(std::size_t i) const {
-    if (grid_.valid[i] == 0 || !is_linked(i, i - 1) || !is_linked(i, i + 1) || !is_linked(i, i - wide_) ||
-        !is_linked(i, i + wide_)) {
+    if ((grid_.valid[i] & grid_.valid[i - 1] & grid_.valid[i + 1] & grid_.valid[i - wide_] &
+         grid_.valid[i + wide_]) == 0) {
       return kMissing;
     }
-    const Eigen::Vector3f normal = upright(i);
+    const Eigen::Vector3f at = grid_.point(i);
+    const Eigen::Vector3f left = grid_.point(i - 1) - at, right = grid_.point(i + 1) - at;
+    const Eigen::Vector3f up = grid_.point(i - wide_) - at, down = grid_.point(i + wide_) - at;
+    const float longest2 =
+        std::max({left.squaredNorm(), right.squaredNorm(), up.squaredNorm(), down.squaredNorm()});
+    const Eigen::Vector3f normal = (right - left).cross(down - up);
     const float length = normal.norm();
-    const Eigen::Vector3f bend = grid_.point(i - 1) + grid_.point(i + 1) + grid_.point(i - wide_) +
-                                 grid_.point(i + wide_) - 4.0F * grid_.point(i);
-    return length > 0 ? std::abs(bend.dot(normal)) / (kOfBend * length) : kMissing;
+    if (!(longest2 <= longest2_) || !(length > 0)) {
+      return kMissing;
+    }
+    return std::abs((left + right + up + down).dot(normal)) / (kOfBend * length);
   }
 
   /// Of a sample that stands out; nothing where one of the eight around it is missing or far off.
@@ -121,9 +127,6 @@ class Surroundings {
   }
 
  private:
-  [[nodiscard]] bool is_linked(std::size_t i, std::size_t j) const {
-    return grid_.valid[j] != 0 && (grid_.point(j) - grid_.point(i)).squaredNorm() <= longest2_;
-  }
   /// Along the normal of the surface.
   [[nodiscard]] Eigen::Vector3f upright(std::size_t i) const {
     return (grid_.point(i + 1) - grid_.point(i - 1)).cross(grid_.point(i + wide_) - grid_.point(i - wide_));
