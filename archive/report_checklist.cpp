@@ -167,6 +167,10 @@ std::string checklist_section(const ReportInput& input) {
   if (!list.scans_lost.empty()) {
     html += dl_entry("Lost", listed(list.scans_lost) + ", missing or not the bytes that were stored");
   }
+  if (!list.scans_unplaced.empty()) {
+    html += dl_entry("Not placed yet",
+                     listed(list.scans_unplaced) + ", stored, and in neither model nor verdict");
+  }
   if (list.worst_sigma_scan >= 0) {
     html += dl_entry("Worst place", "scan " + std::to_string(list.worst_sigma_scan) + ", σ " +
                                         fixed(1000 * list.worst_sigma_mm, 1) + " µm");

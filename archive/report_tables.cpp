@@ -64,6 +64,20 @@ std::string taken_out_rows(const ReportInput& input) {
   return rows;
 }
 
+/// The scans that are stored and have no place yet: in nothing else of the table.
+std::string unplaced_rows(const ReportInput& input) {
+  const std::string dash = "–";
+  std::string rows;
+  for (const int id : input.checklist.scans_unplaced) {
+    const auto entry = std::ranges::find(input.entries, id, &ScanEntry::id);
+    const std::string file = entry == input.entries.end() ? std::string() : entry->file;
+    rows += table_row({std::to_string(id), file_cell(input, id, file), "not placed yet", dash, dash, dash,
+                       dash, dash, dash, dash, "stored, and in neither model nor verdict"},
+                      "open");
+  }
+  return rows;
+}
+
 const RedScan* find_counts(const RedMap& map, int id) {
   const auto found =
       std::find_if(map.scans.begin(), map.scans.end(), [&](const RedScan& scan) { return scan.id == id; });
@@ -73,8 +87,8 @@ const RedScan* find_counts(const RedMap& map, int id) {
 }  // namespace
 
 std::string scans_section(const ReportInput& input) {
-  const std::string taken_out = taken_out_rows(input);
-  if (input.scans.empty() && taken_out.empty()) {
+  const std::string others = unplaced_rows(input) + taken_out_rows(input);
+  if (input.scans.empty() && others.empty()) {
     return "<section>\n<h2>Scans</h2>\n<p>There are none.</p>\n</section>\n";
   }
   std::string rows;
@@ -97,7 +111,7 @@ std::string scans_section(const ReportInput& input) {
          html_table("scans",
                     {"No", "File", "Status", "rms, µm", "σ, µm", "Overlap, %", "Samples", "Red", "Cleared",
                      "Excused", "Remark"},
-                    rows + taken_out) +
+                    rows + others) +
          "<p class=\"aside\">rms: residual from points to the surface of the other scans over the overlap. "
          "σ: how far "
          "this scan’s surface may be off because of its pose, as predicted. Overlap: share of the smaller "

@@ -43,6 +43,10 @@ std::string open_points(const ReportInput& input) {
     items += item("The session has lost " + listed(list.scans_lost) +
                   ": what they saw is not in this verdict. A copy of the session may bring them back.");
   }
+  if (!list.scans_unplaced.empty()) {
+    items += item("No place was worked out yet for " + listed(list.scans_unplaced) +
+                  ": what they saw is not in this verdict. dubsar register places them.");
+  }
   if (!list.store_whole) {
     items += item(list.store_checked.empty()
                       ? "Not every stored byte was checked against its checksum."

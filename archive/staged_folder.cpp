@@ -110,7 +110,7 @@ Result<StagedFolder> StagedFolder::begin(const fs::path& wanted, bool replace) {
     if (const int why = lock_folder(lock, LOCK_EX | LOCK_NB); why != 0) {
       ::close(lock);
       return why != EWOULDBLOCK ? storage(staged, "cannot lock the folder", why)
-                                : fail(ErrorKind::kUsage, "another program is writing this folder now",
+                                : fail(ErrorKind::kStorage, "another program is writing this folder now",
                                        target.string(), "wait for it, or choose another folder");
     }
     if (::fstat(lock, &mine) == 0 && ::stat(staged.c_str(), &there) == 0 && mine.st_ino == there.st_ino) {

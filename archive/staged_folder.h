@@ -17,9 +17,10 @@ namespace dubsar {
 class StagedFolder {
  public:
   /// Makes the temporary folder, and durably those that it lies in. What a killed program left there is
-  /// removed first, the folder itself with it where it is another user's or others may write into it; kUsage
-  /// while another program is at it, and where something lies at `target` already that `replace` does not let
-  /// go (an empty folder is nothing), or a disk is mounted there. kStorage where nothing can be made.
+  /// removed first, the folder itself with it where it is another user's or others may write into it. kUsage
+  /// where something lies at `target` already that `replace` does not let go (an empty folder is nothing), or
+  /// a disk is mounted there; kStorage where nothing can be made, and while another program is at it, which
+  /// is over when that program ends.
   [[nodiscard]] static Result<StagedFolder> begin(const std::filesystem::path& target, bool replace);
 
   StagedFolder(StagedFolder&& other) noexcept;

@@ -77,6 +77,7 @@ struct Checklist {
   int scans_unsure = 0;
   int scans_failed = 0;
   std::vector<int> scans_lost;        ///< ids of those that stand and cannot be read as they were stored
+  std::vector<int> scans_unplaced;    ///< ids of those that stand and have no pose yet
   double worst_sigma_mm = 0;          ///< of the registered scans
   int worst_sigma_scan = -1;          ///< its id; -1 when no scan is registered
   std::vector<ScanWarning> warnings;  ///< what is wrong with scans although they are registered

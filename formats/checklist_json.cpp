@@ -109,6 +109,17 @@ std::vector<ScanWarning> lines_from(const JsonNode& root, const char* key) {
   return out;
 }
 
+/// Likewise.
+std::vector<int> ids_from(const JsonNode& root, const char* key) {
+  std::vector<int> out;
+  if (const auto ids = root.find(key)) {
+    for (const JsonNode& id : ids->items()) {
+      out.push_back(static_cast<int>(id.integer(0, std::numeric_limits<int>::max())));
+    }
+  }
+  return out;
+}
+
 }  // namespace
 
 OrderedJson checklist_json(const Checklist& list) {
@@ -124,6 +135,9 @@ OrderedJson checklist_json(const Checklist& list) {
   root["scans_failed"] = list.scans_failed;
   if (!list.scans_lost.empty()) {
     root["scans_lost"] = list.scans_lost;
+  }
+  if (!list.scans_unplaced.empty()) {
+    root["scans_unplaced"] = list.scans_unplaced;
   }
   if (list.worst_sigma_scan >= 0) {
     root["worst_sigma_mm"] = list.worst_sigma_mm;
@@ -181,11 +195,8 @@ Result<Checklist> parse_checklist(std::string_view text, const std::string& wher
   list.scans_registered = count("scans_registered");
   list.scans_unsure = count("scans_unsure");
   list.scans_failed = count("scans_failed");
-  if (const auto lost = root.find("scans_lost")) {
-    for (const JsonNode& id : lost->items()) {
-      list.scans_lost.push_back(static_cast<int>(id.integer(0, std::numeric_limits<int>::max())));
-    }
-  }
+  list.scans_lost = ids_from(root, "scans_lost");
+  list.scans_unplaced = ids_from(root, "scans_unplaced");
   if (const auto sigma = root.find("worst_sigma_mm")) {
     list.worst_sigma_mm = sigma->number(0);
     list.worst_sigma_scan = count("worst_sigma_scan");

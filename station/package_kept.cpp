@@ -4,6 +4,7 @@
 // it anew.
 
 #include <algorithm>
+#include <iterator>
 #include <map>
 #include <set>
 #include <string>
@@ -158,6 +159,36 @@ Status keep_what_was_made_of_lost(PackageContent& content, const std::vector<Sto
   return {};
 }
 
+/// The pages that the latest signature stands on, where it holds and others are packed in their place: nobody
+/// signed those.
+Status keep_signed_pages(PackageContent& content) {
+  const auto& signed_off = content.results().checklist.sign_off;
+  const std::vector<std::string>& whole = content.source.found().whole;
+  const std::string page = "export/checklist.html";
+  if (content.source.pages() || !signed_off || !signed_off->holds() ||
+      std::ranges::find(whole, page) == whole.end()) {
+    return {};
+  }
+  const Result<std::string> text = read_whole_file(content.store.folder() / page);
+  if (!text || text->find(signed_off->sign_off.digest) == std::string::npos) {
+    return {};
+  }
+  std::vector<std::string> pages;
+  std::ranges::copy_if(whole, std::back_inserter(pages),
+                       [](const std::string& name) { return name.starts_with("export/"); });
+  const auto folders = keep_derived(content, pages);
+  if (!folders) {
+    return std::unexpected(folders.error());
+  }
+  for (const auto& [folder, files] : *folders) {
+    content.list(folder,
+                 "the verdict and its pages as they were signed, as the session keeps them; those in "
+                 "report/ were made anew, for " +
+                     content.source.why_anew());
+  }
+  return {};
+}
+
 }  // namespace
 
 Status add_kept(PackageContent& content) {
@@ -168,7 +199,7 @@ Status add_kept(PackageContent& content) {
   const Status unrecorded = keep_unrecorded(content);
   const std::vector<int> lost = lost_scans(*scans);
   if (!unrecorded || lost.empty()) {
-    return unrecorded;
+    return unrecorded ? keep_signed_pages(content) : unrecorded;
   }
   const auto of_the_rest = stored_mesh_file(content.store, content.results().poses, content.job);
   if (!of_the_rest) {

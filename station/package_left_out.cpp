@@ -26,6 +26,47 @@ bool lies_in(const std::string& name, const std::vector<std::string>& folders) {
       folders, [&](const std::string& folder) { return name == folder || name.starts_with(folder + "/"); });
 }
 
+/// The session's mesh is the package's model, in the package's forms.
+Result<bool> mesh_is_the_model(const PackageContent& content) {
+  const auto mesh = stored_mesh_file(content.store, content.results().poses, content.job);
+  return mesh ? Result<bool>(mesh->has_value()) : std::unexpected(mesh.error());
+}
+
+/// Names whole files of the session in whose place others are packed, each kind with why.
+Status add_stale(PackageContent& content) {
+  if (content.source.pages()) {
+    return {};
+  }
+  const Result<bool> same_mesh = mesh_is_the_model(content);
+  if (!same_mesh) {
+    return std::unexpected(same_mesh.error());
+  }
+  const bool same_wedges = content.wedges_are_kept || (*same_mesh && !content.has(PackagePart::kWedges));
+  std::vector<std::string> pages;
+  std::vector<std::string> others;
+  for (const std::string& name : content.source.found().whole) {
+    std::error_code unknown;
+    if (!is_derived(name) || is_by_hand(name) || fs::exists(content.root / "kept" / name, unknown)) {
+      continue;
+    }
+    if (name.starts_with("export/")) {
+      pages.push_back(name);
+    } else if (!(name.starts_with("mesh/") ? *same_mesh : same_wedges)) {
+      others.push_back(name);
+    }
+  }
+  const auto tell = [&](const std::vector<std::string>& names, const std::string& why) {
+    if (!names.empty()) {
+      content.left_out.push_back("As the session keeps them these are not here" + why +
+                                 "; what is here of the kind was worked out anew: " + file_list(names) + ".");
+    }
+  };
+  const std::string& why = content.source.why_anew();
+  tell(pages, why.empty() ? why : " (" + why + ")");
+  tell(others, ", for they are not of the scans and places that are here, or another version made them");
+  return {};
+}
+
 }  // namespace
 
 bool is_derived(const std::string& name) {
@@ -46,21 +87,8 @@ Status add_left_out(PackageContent& content) {
                       one_line(damage.where), damage.what));
     }
   }
-  const auto was_kept = [&](const std::string& name) {
-    std::error_code unknown;
-    return fs::exists(content.root / "kept" / name, unknown);
-  };
-  std::vector<std::string> stale;
-  for (const std::string& name : found.whole) {
-    if (!content.source.pages() && is_derived(name) && !is_by_hand(name) && !was_kept(name)) {
-      stale.push_back(name);
-    }
-  }
-  if (!stale.empty()) {
-    content.left_out.push_back(
-        "As the session keeps them these are not here, for they are not all of the scans as they "
-        "stand; what is here of the kind was worked out anew: " +
-        file_list(stale) + ".");
+  if (const Status told = add_stale(content); !told) {
+    return told;
   }
   if (!found.set_aside.empty()) {
     content.left_out.push_back(

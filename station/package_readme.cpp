@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <iterator>
 
+#include "core/scan_list.h"
 #include "station/package_content.h"
 
 namespace dubsar {
@@ -154,6 +155,9 @@ Status add_readme(PackageContent& content) {
   text += folded("Signature: " + signature_words(content) + ".", 0);
   if (const std::string out = taken_out_in_words(content.facts.scans); !out.empty()) {
     text += folded("Taken out by the operator, and in neither model nor verdict: " + out + ".", 0);
+  }
+  if (const auto& unplaced = content.results().checklist.scans_unplaced; !unplaced.empty()) {
+    text += folded("Without a place so far, and in neither model nor verdict: " + listed(unplaced) + ".", 0);
   }
   text += "\nTHE TABLET\n\n";
   TabletWords words = content.facts.tablet;

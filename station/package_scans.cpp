@@ -14,7 +14,9 @@
 #include <utility>
 
 #include "acquisition/told_device.h"
+#include "core/log.h"
 #include "core/parallel.h"
+#include "core/scan_list.h"
 #include "formats/atomic_file.h"
 #include "formats/checklist_json.h"
 #include "formats/grid_file.h"
@@ -175,6 +177,24 @@ Result<std::string> events_text(const SessionStore& store) {
   return text_of(list);
 }
 
+/// That there are scans which the model and the verdict know nothing of.
+void tell_of_unplaced(PackageContent& content) {
+  const std::vector<int>& unplaced = content.results().checklist.scans_unplaced;
+  if (unplaced.empty()) {
+    return;
+  }
+  const std::string which = listed(unplaced);
+  content.lacking.push_back(
+      fmt::format("No place was worked out yet for {}: stored in the session and here as measured, and in "
+                  "neither model nor verdict (dubsar register places what a session holds; where another "
+                  "program was scanning into it, the package is of its state at {}).",
+                  which, content.when));
+  log_warning(
+      fmt::format("{}: no place was worked out yet for {}, so that neither model nor verdict has what "
+                  "was seen there; dubsar register places what the session holds",
+                  content.store.folder().string(), which));
+}
+
 }  // namespace
 
 Status add_scans(PackageContent& content) {
@@ -221,6 +241,7 @@ Status add_scans(PackageContent& content) {
   if (!poses) {
     return std::unexpected(poses.error());
   }
+  tell_of_unplaced(content);
   const std::map<int, std::string> stored = stored_times(content.store);
   OrderedJson list = OrderedJson::array();
   for (std::size_t i = 0; i < scans->size(); ++i) {

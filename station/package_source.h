@@ -30,9 +30,10 @@ struct KeptPages {
 /// anew.
 class PackageSource {
  public:
-  /// Takes what the session keeps where mesh, red map, poses, pages and sign-off all belong together and are
-  /// whole; else goes through grids and poses again, as `plan` does, which takes far longer. Opens the
-  /// session for reading only. Errors: those of the store and of the stages, kCancelled.
+  /// Takes what the session keeps where its record, mesh, red map, poses, pages and sign-off all belong
+  /// together and are whole, whatever else of it is damaged; else goes through grids and poses again, as
+  /// `plan` does, which takes far longer. Opens the session for reading only. Errors: those of the store and
+  /// of the stages, kCancelled.
   [[nodiscard]] static Result<PackageSource> open(const std::filesystem::path& session, JobContext& job);
 
   [[nodiscard]] const SessionStore& store() const { return set_ ? *set_->store : *store_; }
@@ -41,6 +42,9 @@ class PackageSource {
   [[nodiscard]] const RigidTransform& tablet_from_model() const { return tablet_from_model_; }
   /// Nothing when the verdict was worked out anew: report_input() then has what they are made of.
   [[nodiscard]] const std::optional<KeptPages>& pages() const { return pages_; }
+  /// Why that is so: "export/report.html is not as it was stored (missing)". Empty where there are pages, and
+  /// where the session keeps none.
+  [[nodiscard]] const std::string& why_anew() const { return why_anew_; }
   /// What the files of the session were when it was opened.
   [[nodiscard]] const VerifyReport& found() const { return found_; }
   /// Only where pages() is nothing.
@@ -49,12 +53,14 @@ class PackageSource {
   }
 
  private:
+  /// Fills in pages(), or why_anew().
   Status take_kept(JobContext& job);
 
   std::optional<SessionStore> store_;
   Results results_;
   VerifyReport found_;
   std::optional<KeptPages> pages_;
+  std::string why_anew_;
   std::optional<ScanSet> set_;
   std::optional<PlannedAgain> planned_;
   RigidTransform tablet_from_model_;

@@ -25,6 +25,7 @@
 #include "station/session_scans.h"
 #include "station/tablet_label.h"
 #include "station/tablet_record.h"
+#include "station/unplaced_scans.h"
 
 namespace dubsar {
 
@@ -81,14 +82,15 @@ std::vector<std::string> accuracy_sentences(const std::vector<ScanPose>& poses,
   return out;
 }
 
-/// What is to be said of single scans of the session: which are lost, and what devices remarked on those that
-/// stand.
-Status tell_of_scans(const SessionStore& store, Checklist& list) {
+/// What is to be said of single scans of the session: which are lost, which have none of the places, and what
+/// devices remarked on those that stand.
+Status tell_of_scans(const SessionStore& store, const std::vector<ScanPose>& poses, Checklist& list) {
   const auto scans = store.scans();
   if (!scans) {
     return std::unexpected(scans.error());
   }
   list.scans_lost = lost_scans(*scans);
+  list.scans_unplaced = unplaced_scans(*scans, poses);
   for (const StoredScan& scan : *scans) {
     if (!scan.dropped && !scan.damaged && !scan.remark.empty()) {
       list.remarks.push_back({scan.id, scan.remark});
@@ -151,7 +153,7 @@ Result<Checklist> checklist_of(const RedMap& red_map, const std::vector<ScanPose
   if (rig == nullptr) {
     tell_of_range_camera(*store, list);
   }
-  if (const Status told = tell_of_scans(*store, list); !told) {
+  if (const Status told = tell_of_scans(*store, poses, list); !told) {
     return std::unexpected(told.error());
   }
   list.disk_free_gib = rounded_gib(store->disk_free_gib());

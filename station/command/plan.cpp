@@ -169,14 +169,15 @@ void print_map(const RedMap& map) {
   }
 }
 
-/// Scans that take no part in the verdict: those that are not registered, told of here, those without a pose
-/// and what cannot be read, of which reading has told.
+/// Scans that take no part in the verdict: those that are not registered or have no pose, told of here, and
+/// what cannot be read, of which reading has told.
 Result<std::vector<LeftOutScan>> leave_out(const ScanSet& set, const std::vector<ScanPose>& poses) {
   std::vector<LeftOutScan> out;
   for (const StationScan& scan : set.scans) {
     const auto pose = std::ranges::find(poses, scan.id, &ScanPose::id);
     if (pose == poses.end()) {
       out.push_back({scan.id, scan.file, LeftOutScan::Why::kNoPose, "there is no pose of it"});
+      warn_of(out.back());
     } else if (pose->status != PoseStatus::kRegistered) {
       ScanPose named = *pose;
       named.file = scan.file;

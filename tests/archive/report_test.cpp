@@ -184,6 +184,24 @@ TEST_F(Report, LostScansAreNamed) {
   }
 }
 
+TEST_F(Report, ScansWithoutAPlaceAreNamed) {
+  EXPECT_THAT(html(), Not(HasSubstr("laced yet")));
+  map_.conclusive = list_.conclusive = false;
+  list_.scans_unplaced = {3, 4};
+  entries_ = {{.id = 3, .file = "d<3>.ply", .when = "2026-11-27T23:07:05Z"}};
+  for (const std::string& page :
+       {html(), html([](const ReportInput&all, const ReportPictures&pictures) -> Result<std::string> {
+          return checklist_html(all, pictures);
+        })}) {
+    EXPECT_THAT(page, HasSubstr("No place was worked out yet for scans 3 and 4: "));
+    EXPECT_THAT(page, HasSubstr("<dt>Not placed yet</dt><dd>scans 3 and 4, stored"));
+  }
+  const std::string report = html();
+  EXPECT_THAT(report, HasSubstr("<td>3</td><td>d&lt;3&gt;.ply<br><span class=\"aside\">stored 2026-11-27 "
+                                "23:07:05 UTC</span></td><td>not placed yet</td>"));
+  EXPECT_THAT(report, HasSubstr("<td>4</td><td></td><td>not placed yet</td>"));
+}
+
 TEST_F(Report, SaysWhenItWasScannedAndWhatWasTakenOut) {
   const std::string silent = html();
   EXPECT_THAT(silent, Not(HasSubstr("<dt>Scanned</dt>")));

@@ -100,7 +100,8 @@ TEST(StagedFolder, IsThereWholeOrNotAtAll) {
     ASSERT_TRUE(staged) << staged.error().line();
     put(staged->path() / "file", "x");
     EXPECT_FALSE(fs::exists(target));
-    EXPECT_EQ(StagedFolder::begin(target, false).error().kind, ErrorKind::kUsage) << "two at once";
+    EXPECT_EQ(StagedFolder::begin(target, false).error().kind, ErrorKind::kStorage)
+        << "two at once: to be tried again, not given up";
   }
   EXPECT_TRUE(fs::is_empty(target.parent_path())) << "given up: nothing is left";
   auto staged = StagedFolder::begin(target, false);

@@ -285,6 +285,7 @@ TEST(ChecklistJson, ReadsBack) {
   checklist.store_files = 31;
   checklist.scans_unsure = 2;
   checklist.scans_lost = {0, 7};
+  checklist.scans_unplaced = {5, 8};
   checklist.calibration = "bar 17";
   checklist.calibration_age_days = 3.5;
   checklist.disk_free_gib = 12.25;
@@ -298,6 +299,7 @@ TEST(ChecklistJson, ReadsBack) {
   EXPECT_EQ(back->warnings[0].scan, 2);
   EXPECT_EQ(back->warnings[0].text, "it is 2.0 % too long");
   EXPECT_EQ(back->scans_lost, checklist.scans_lost);
+  EXPECT_EQ(back->scans_unplaced, checklist.scans_unplaced);
   ASSERT_EQ(back->remarks.size(), 1U);
   EXPECT_EQ(back->remarks[0].scan, 4);
   EXPECT_EQ(back->remarks[0].text, "its header says another spacing");

@@ -271,6 +271,7 @@ TEST_F(ExportByHand, ASessionThatNeverHadPagesIsNotToldThatTheyAreOld) {
                 .status,
             1);
   fs::remove(at("halted") / "export/report.html");
+  fs::remove(at("halted") / "export/checklist.html");
   const Outcome done = run_command({"export", at("halted").string(), "--to", at("halted.bag").string(),
                                     "--without", "renderings,features,grid-ply,wedges"});
   EXPECT_EQ(done.status, 0) << done.err;

@@ -126,6 +126,18 @@ wait $worker 2>/dev/null || true
 "$DUBSAR" -q verify "$folder/museum/s" >/dev/null 2>&1 || fail "the session was changed"
 "$DUBSAR" -q verify "$folder/museum/s.results/package" >/dev/null 2>&1 || fail "the package is not whole"
 [ -z "$(find "$folder/museum/s.results" -name '.dubsar-tmp-*')" ] || fail "something was left behind"
+# While another program makes the package there is something to be tried again, not something that is wrong.
+if command -v flock >/dev/null; then
+  cp -r "$folder/museum/s" "$folder/museum/u"
+  mkdir -p "$folder/museum/u.results/.dubsar-tmp-package"
+  status=0
+  flock "$folder/museum/u.results/.dubsar-tmp-package" "$workflows/do-tablet" "$folder" museum/u 2>/dev/null || status=$?
+  [ $status = 4 ] || fail "two at once: status $status"
+  tail -n 1 "$folder/log/museum/u.log" | grep -q ' export failed status=4 .*another program is writing this folder now' ||
+    fail "two at once: $(cat "$folder/log/museum/u.log")"
+  "$workflows/do-tablet" "$folder" museum/u 2>/dev/null || fail "after the other of two: $(cat "$folder/log/museum/u.log")"
+  rm -r "$folder/museum/u" "$folder/museum/u.results" "$folder/log/museum/u.log"
+fi
 # So it is where the collection is the session.
 "$workflows/do-tablet" "$folder/museum/s" . 2>/dev/null || fail "a collection that is a session"
 tail -n 1 "$folder/museum/s.results/log/s.log" | grep -q ' export found-done$' || fail "a collection that is a session was done anew"
