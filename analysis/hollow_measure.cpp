@@ -8,6 +8,7 @@
 #include <numeric>
 
 #include "analysis/inner_edges.h"
+#include "analysis/roundness.h"
 #include "analysis/wedge_numbering.h"
 #include "core/parallel.h"
 
@@ -142,6 +143,8 @@ std::expected<WedgeCandidate, std::string> HollowMeasure::measure(
   }
   const InnerEdges edges = find_inner_edges(patch, *faces);
   WedgeCandidate found = measure_wedge(patch, *faces, edges, fields_.surface, areas_, options_.exits);
+  found.floor_mm = patch.depth_mm;
+  found.roundness = roundness_of(patch, *faces);
   number_from_directional_edge(&found);
   if (open != nullptr) {
     leftovers(patch, *faces, least_vertices(), open);

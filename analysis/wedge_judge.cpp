@@ -101,7 +101,7 @@ void compare(const std::vector<const WedgeCandidate*>& good, double typical_dept
 /// How much of the hollows around each candidate, by area, belongs to good ones: on a broken face most of
 /// what looks like a pit closes to none.
 void note_company(const std::vector<WedgeCandidate>& candidates, const std::vector<std::uint8_t>& is_good,
-                  double typical_width, std::vector<WedgeCandidate*>* open) {
+                  double typical_width, double most_round, std::vector<WedgeCandidate*>* open) {
   std::vector<std::size_t> order(candidates.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   const auto x_of = [&](std::size_t i) { return candidates[i].wedge.depth_point_mm.x(); };
@@ -117,7 +117,9 @@ void note_company(const std::vector<WedgeCandidate>& candidates, const std::vect
         for (auto it = std::ranges::lower_bound(order, at.x() - reach, {}, x_of);
              it != order.end() && x_of(*it) <= at.x() + reach; ++it) {
           const WedgeCandidate& other = candidates[*it];
-          if (&other == &c || (other.wedge.depth_point_mm - at).squaredNorm() > reach * reach) {
+          // A round one is no broken clay either: somebody's finger or a sign for a number.
+          if (&other == &c || other.roundness > most_round ||
+              (other.wedge.depth_point_mm - at).squaredNorm() > reach * reach) {
             continue;
           }
           good += is_good[*it] != 0 ? other.hollow_mm2 : 0.0;
@@ -137,6 +139,12 @@ std::string out_of_bounds(const JudgeOptions& options, const WedgeCandidate& c) 
   }
   if (w.vertex_count < options.least_vertices) {
     return "too few vertices lie on its faces";
+  }
+  if (c.roundness > options.most_round) {
+    return "it is round: a bowl or a cone, not three faces";
+  }
+  if (w.depth_mm > options.most_floors * c.floor_mm) {
+    return "its faces meet far below its floor";
   }
   // Whatever definition of the exit points the user wants to read: what is a wedge does not hang on it.
   std::array<double, 3> length{};
@@ -179,7 +187,7 @@ void judge_wedges(const JudgeOptions& options, std::vector<WedgeCandidate>* cand
     for (const WedgeCandidate* c : good) {
       is_good[static_cast<std::size_t>(c - candidates->data())] = 1;
     }
-    note_company(*candidates, is_good, median_of(widths), &open);
+    note_company(*candidates, is_good, median_of(widths), options.most_round, &open);
   }
   for (WedgeCandidate* c : open) {
     if (enough) {

@@ -15,6 +15,11 @@ struct JudgeOptions {
   double max_depth_mm = 6.0;
   double min_edge_mm = 0.2;
   double max_edge_mm = 30.0;
+  /// See roundness_of(); between those of wedges and those of bowls and cones, which docs/scholars/
+  /// measurements.md has.
+  double most_round = 0.45;
+  /// Depth of the depth point, in depths of the lowest clay: dirt fills a wedge, but a shaft was never one.
+  double most_floors = 3.0;
   int least_vertices = 15;  ///< on its three faces; fewer cannot be told from noise
 };
 

@@ -20,8 +20,8 @@ namespace dubsar {
 
 /// Raised whenever the same mesh gives other wedges, or other words of them: what was kept by another method
 /// is measured anew. 2: edges are counted from the directional one; sigmas of slopes, and on coarse meshes
-/// larger. 3: faces are fitted away from creases and rims.
-inline constexpr int kWedgeMethod = 3;
+/// larger. 3: faces are fitted away from creases and rims. 4: bowls and cones are none.
+inline constexpr int kWedgeMethod = 4;
 
 struct WedgeOptions {
   ExitDefinition exits = ExitDefinition::kSurface;

@@ -81,6 +81,9 @@ std::string wedges_to_json(const WedgeFile& file) {
   if (!file.unit_assumed.empty()) {
     root["unit_assumed"] = file.unit_assumed;
   }
+  if (file.spacing_mm > 0) {
+    root["spacing_mm"] = file.spacing_mm;
+  }
   root["exit"] = kExits[static_cast<std::size_t>(file.exits)];
   if (file.text_from_model) {
     root["text_from_model"] = json_of(*file.text_from_model);
@@ -144,6 +147,10 @@ Result<WedgeFile> parse_wedges(std::string_view text, const std::string& where) 
   }
   if (const auto unit = root.find("unit_assumed")) {
     file.unit_assumed = unit->text();
+  }
+  if (const auto spacing = root.find("spacing_mm")) {
+    constexpr double kWidestMm = 1e6;
+    file.spacing_mm = spacing->number(0, kWidestMm);
   }
   if (const auto exits = root.find("exit")) {
     file.exits = static_cast<ExitDefinition>(exits->one_of(kExits));

@@ -27,6 +27,8 @@ struct WedgeFile {
   ExitDefinition exits = ExitDefinition::kSurface;
   /// What the mesh's numbers were taken for, by their size alone: one of kLengthUnits. Mostly empty.
   std::string unit_assumed;
+  /// Of the mesh: the edge of the equilateral triangle that its mean vertex stands for; 0: not said.
+  double spacing_mm = 0;
   std::vector<Wedge> wedges;
   std::vector<RejectedWedge> rejected;
   std::size_t corrections = 0;       ///< how many a person has asked for

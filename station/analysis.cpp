@@ -8,8 +8,10 @@
 #include <array>
 #include <cmath>
 
+#include "analysis/hollow_measure.h"
 #include "analysis/wedge_features.h"
 #include "core/log.h"
+#include "core/order_statistics.h"
 #include "core/parallel.h"
 #include "station/results.h"
 
@@ -22,6 +24,12 @@ using Rgb = std::array<std::uint8_t, 3>;
 constexpr Rgb kClay = {196, 176, 148};
 constexpr Rgb kHollow = {150, 158, 172};
 constexpr Rgb kBorder = {52, 84, 160};
+
+/// Wedges of simulated tablets are 0.3 to 0.5 mm deep; docs/scholars/measurements.md has how many of them are
+/// found at which spacing.
+constexpr double kCoarseMm = 0.14;
+constexpr double kSpacingsToADepth = 3.5;
+constexpr std::size_t kFewestLarge = 10;
 
 /// A colour of its own for each number: hues by the golden ratio, so that neighbours differ.
 Rgb colour_of(std::int32_t number, std::int8_t face) {
@@ -76,11 +84,31 @@ void warn_of_lost(const Analysis& analysis, const std::string& where) {
   }
 }
 
+void warn_of_coarse(const Analysis& analysis, const std::string& where) {
+  const double spacing_mm = mean_spacing_mm(analysis.findings.area_mm2);
+  std::vector<double> depths;
+  for (const Wedge& wedge : analysis.set.wedges) {
+    depths.push_back(wedge.depth_mm);
+  }
+  const bool large =
+      depths.size() >= kFewestLarge && median_of(std::move(depths)) > kSpacingsToADepth * spacing_mm;
+  if (spacing_mm <= kCoarseMm || large) {
+    return;
+  }
+  log_warning(Error{ErrorKind::kBadInput,
+                    fmt::format("too coarse for wedges of the usual size, many or all of them are missed: "
+                                "its spacing is {:.2f} mm",
+                                spacing_mm),
+                    where, "scan it, or export it, at 0.1 mm or finer"}
+                  .line());
+}
+
 WedgeFile wedge_file(std::string mesh_name, const AnalysisOptions& options, const Analysis& analysis) {
   WedgeFile file;
   file.program = program_name();
   file.method = kWedgeMethod;
   file.mesh = std::move(mesh_name);
+  file.spacing_mm = mean_spacing_mm(analysis.findings.area_mm2);
   file.exits = options.wedges.exits;
   file.wedges = analysis.set.wedges;
   file.profiles = make_profiles(file.wedges);

@@ -68,6 +68,7 @@ Result<std::optional<WedgeFile>> measure_wedges(const Mesh& mesh,
     return std::nullopt;
   }
   warn_of_lost(*analysis, kCorrections);
+  warn_of_coarse(*analysis, "mesh/model.ply");
   return wedge_file("../mesh/model.ply", options, *analysis);
 }
 

@@ -7,9 +7,12 @@
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 
+#include <functional>
 #include <map>
+#include <string>
 
 #include "analysis/text_frame.h"
+#include "core/random.h"
 #include "core/units.h"
 #include "sim/tablet.h"
 #include "tests/analysis/support/pits.h"
@@ -229,6 +232,69 @@ TEST(Wedges, ThereAreNoneOnABlankTabletAndASphere) {
   }
   EXPECT_TRUE(wedges_of(sphere).wedges.empty());
   EXPECT_TRUE(wedges_of(shapes::unit_sphere(0)).wedges.empty());
+}
+
+/// Sixteen hollows of one shape on a sheet, 4 mm apart, in clay that is a few micrometres rough.
+Mesh hollows(double spacing_mm, double noise_mm, const std::function<double(double, double)>& floor) {
+  Random random(7);
+  return pits::sheet(16, spacing_mm, [&](double x, double y) {
+    const auto within = [](double a) { return a - 4.0 * std::floor(a / 4.0) - 2.0; };
+    return std::min(0.0, floor(within(x), within(y))) + noise_mm * random.normal();
+  });
+}
+
+TEST(Wedges, BowlsAndConesAreNoneAndSaidToBeRound) {
+  const auto expect_round = [](const Mesh& mesh, const std::string& what) {
+    const WedgeSet set = wedges_of(mesh);
+    EXPECT_TRUE(set.wedges.empty()) << what << ": " << set.wedges.size();
+    EXPECT_GE(std::ranges::count_if(
+                  set.rejected, [](const RejectedWedge& r) { return r.reason.starts_with("it is round"); }),
+              12)
+        << what;
+  };
+  // A finger's dents and signs for numbers, so wide and so deep.
+  for (const auto& [radius, depth] : {std::pair{0.6, 0.5}, {0.9, 0.5}, {1.0, 0.8}, {0.8, 0.6}}) {
+    const double sphere = (radius * radius + depth * depth) / (2 * depth);
+    const auto bowl = [&](double x, double y) {
+      const double rest = sphere * sphere - x * x - y * y;
+      return rest > 0 ? sphere - depth - std::sqrt(rest) : 0.0;
+    };
+    for (const double noise : {0.003, 0.015}) {
+      expect_round(hollows(0.05, noise, bowl), "bowl " + std::to_string(radius) + " " +
+                                                   std::to_string(depth) + " " + std::to_string(noise));
+    }
+  }
+  for (const double slope : {0.8, 1.0}) {  // an awl's holes
+    const auto cone = [&](double x, double y) { return slope * std::hypot(x, y) - 0.5; };
+    expect_round(hollows(0.05, 0.005, cone), "cone " + std::to_string(slope));
+  }
+}
+
+TEST(Wedges, AThreeSidedShaftWithAFlatFloorIsNone) {
+  const auto shaft = [](double x, double y) {
+    const double out = std::max({x, -0.5 * x + 0.866 * y, -0.5 * x - 0.866 * y});
+    return std::max(-0.5, 5.0 * (out - 0.5));
+  };
+  EXPECT_TRUE(wedges_of(hollows(0.05, 0.005, shaft)).wedges.empty());
+}
+
+TEST(Wedges, BesideBowlsAreFoundAllTheSame) {
+  const pits::Pit pit;
+  const double spacing = 0.06;
+  const Mesh mesh = pits::sheet(24, spacing, [&](double x, double y) {
+    const double i = std::floor(x / 4.0);
+    const double j = std::floor(y / 4.0);
+    const double u = x - 4.0 * i - 2.0;
+    const double v = y - 4.0 * j - 2.0;
+    const bool bowl = static_cast<int>(std::abs(i + j)) % 3 == 0;
+    const double rest = 1.06 * 1.06 - u * u - v * v;
+    return !bowl ? pit.floor(u + 0.6, v) : std::min(0.0, 1.06 - 0.5 - std::sqrt(std::max(rest, 0.0)));
+  });
+  const WedgeSet set = wedges_of(mesh);
+  EXPECT_EQ(set.wedges.size(), 24U);
+  for (const Wedge& wedge : set.wedges) {
+    EXPECT_GT(wedge.confidence, 0.9);
+  }
 }
 
 TEST(Wedges, AReadingThatHardlyLeadsDoesNotTurnTheTablet) {

@@ -50,6 +50,7 @@ TEST(WedgesJson, ReadsBackAllThatWasMeasured) {
   profile.quantiles[3][8] = 2.5;
   file.profiles = {profile};
   file.unit_assumed = "m";
+  file.spacing_mm = 0.125;
   const std::string text = wedges_to_json(file);
   EXPECT_THAT(text, HasSubstr("\"exit_point_surface\""));
   EXPECT_THAT(text, HasSubstr("\"timings_s\""));
@@ -74,6 +75,7 @@ TEST(WedgesJson, ReadsBackAllThatWasMeasured) {
   EXPECT_TRUE(std::isnan(w.sigma.length_mm[1]) && std::isnan(w.sigma.volume_mm3))
       << "nobody knows them of these exits";
   EXPECT_EQ(back->unit_assumed, "m");
+  EXPECT_EQ(back->spacing_mm, 0.125);
   file.unit_assumed.clear();
   EXPECT_THAT(wedges_to_json(file), ::testing::Not(HasSubstr("unit_assumed")));
   file.exits = ExitDefinition::kSurface;

@@ -112,9 +112,11 @@ TEST(AnalyzeCommand, SaysPlainlyThatThereAreNone) {
   const Outcome outcome = run_command({"analyze", at("ten.obj"), "-o", at("w.json")});
   EXPECT_EQ(outcome.status, 0) << outcome.err;
   EXPECT_THAT(outcome.out, HasSubstr("no wedges"));
+  EXPECT_THAT(outcome.err, HasSubstr("too coarse for wedges of the usual size"));
   const auto file = read_wedges(at("w.json"));
   ASSERT_TRUE(file);
   EXPECT_TRUE(file->wedges.empty());
+  EXPECT_GT(file->spacing_mm, 10);
   EXPECT_THAT(file->program, ::testing::StartsWith("Dubsar "));
   EXPECT_GT(file->method, 0);
 }

@@ -379,6 +379,12 @@ constexpr EnginePhrase kPhrases[] = {
     {"its normals do not gather in three faces", "seine Normalen sammeln sich nicht in drei Flächen"},
     {"one of its faces has no vertices", "eine seiner Flächen hat keine Punkte"},
     {"one of its faces is too small", "eine seiner Flächen ist zu klein"},
+    {"too coarse for wedges of the usual size, many or all of them are missed: its spacing is ",
+     "zu grob für Keile gewöhnlicher Größe, viele oder alle fehlen: sein Punktabstand ist "},
+    {"scan it, or export it, at 0.1 mm or finer", "mit 0,1 mm oder feiner scannen oder exportieren"},
+    {"its faces meet far below its floor", "seine Flächen treffen sich weit unter seinem Boden"},
+    {"it is round: a bowl or a cone, not three faces",
+     "es ist rund: eine Schale oder ein Kegel, nicht drei Flächen"},
     {"too few vertices lie on its faces", "zu wenige Punkte liegen auf seinen Flächen"},
     {"an inner edge is too short or too long", "eine innere Kante ist zu kurz oder zu lang"},
     // edges, where a sentence above does not hold them
