@@ -5,9 +5,11 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 #include "analysis/inner_edges.h"
+#include "analysis/mesh_reach.h"
 #include "analysis/roundness.h"
 #include "analysis/wedge_numbering.h"
 #include "core/parallel.h"
@@ -24,6 +26,8 @@ constexpr int kMostPerBasin = 4;
 constexpr double kNoisyShare = 0.1;
 /// Normals over a hollow that add up to less than this, of one for all, look nowhere.
 constexpr double kLeastNormal = 1e-3;
+/// A mesh reaches so many spacings beyond its last vertex.
+constexpr double kEndSpacings = 2.0;
 constexpr const char* kTooLarge = "too large a hollow";
 constexpr const char* kNoSurface = "no free surface above it";
 
@@ -94,7 +98,8 @@ double mean_spacing_mm(const std::vector<float>& areas) {
 
 HollowMeasure::HollowMeasure(const Mesh& mesh, const VertexGraph& graph, const SurfaceFields& fields,
                              const WedgeOptions& options, const std::vector<float>& areas, double noise_mm)
-    : fields_(fields),
+    : mesh_(mesh),
+      fields_(fields),
       options_(options),
       areas_(areas),
       source_{&graph,
@@ -123,6 +128,22 @@ Eigen::Vector3d HollowMeasure::up_over(std::span<const std::uint32_t> vertices) 
   return sum.norm() > kLeastNormal * area ? Eigen::Vector3d(sum.normalized()) : Eigen::Vector3d::Zero();
 }
 
+/// The surface without impressions goes on where the mesh has ended: how far off an exit there is, and with
+/// it a length and the volume, nobody knows.
+void HollowMeasure::note_ends_in_air(double spacing_mm, WedgeCandidate* found) const {
+  constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+  Wedge& wedge = found->wedge;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Eigen::Vector3d& exit = wedge.exit_points_surface_mm[k];
+    const Eigen::Vector3f normal = fields_.surface.normal(exit.cast<float>());
+    const Eigen::Vector3d up = normal.isZero() ? wedge.surface_normal : normal.cast<double>().eval();
+    if (!mesh_reaches(mesh_, *source_.graph, found->vertices, exit, up, kEndSpacings * spacing_mm)) {
+      wedge.sigma.length_mm[k] = kUnknown;
+      wedge.sigma.volume_mm3 = kUnknown;
+    }
+  }
+}
+
 std::expected<WedgeCandidate, std::string> HollowMeasure::measure(
     std::span<const std::uint32_t> vertices, std::vector<std::int32_t>* slot,
     std::vector<std::vector<std::uint32_t>>* open) const {
@@ -145,6 +166,7 @@ std::expected<WedgeCandidate, std::string> HollowMeasure::measure(
   WedgeCandidate found = measure_wedge(patch, *faces, edges, fields_.surface, areas_, options_.exits);
   found.floor_mm = patch.depth_mm;
   found.roundness = roundness_of(patch, *faces);
+  note_ends_in_air(patch.spacing_mm, &found);
   number_from_directional_edge(&found);
   if (open != nullptr) {
     leftovers(patch, *faces, least_vertices(), open);

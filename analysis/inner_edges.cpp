@@ -279,6 +279,8 @@ InnerEdges find_inner_edges(const WedgePatch& patch, const WedgeFaces& faces) {
         edge.extent_mm = std::max(edge.extent_mm, (c.p - out.depth_point).dot(line.direction));
       }
       edge.rms_mm = line.rms_mm;
+      edge.off_planes_rad =
+          std::atan2(line.direction.cross(faces.edge[k]).norm(), line.direction.dot(faces.edge[k]));
       edge.bow_mm = bow_of(contacts[k], line, kCurveTolerance * tolerance_mm, &edge.extent_mm,
                            Random(seed_for(patch.vertex.front(), 3 + k)));
       const double w_line = 1.0 / (line.sigma_rad * line.sigma_rad);

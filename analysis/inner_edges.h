@@ -5,6 +5,7 @@
 #include <Eigen/Core>
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "analysis/wedge_faces.h"
@@ -18,7 +19,10 @@ struct InnerEdge {
   double sigma_rad = 0;                ///< of the direction
   double rms_mm = 0;                   ///< their distance
   double extent_mm = 0;                ///< farthest contact point along it
-  double bow_mm = 0;                   ///< middle of the curve off its chord; 0 where a line is as good
+  /// Between the line of its contact points and the one that its faces' planes meet in; no number where too
+  /// few contact points lie in a line.
+  double off_planes_rad = std::numeric_limits<double>::quiet_NaN();
+  double bow_mm = 0;  ///< middle of the curve off its chord; 0 where a line is as good
 };
 
 struct InnerEdges {

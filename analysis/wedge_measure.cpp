@@ -5,8 +5,8 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
+#include "analysis/wedge_sigmas.h"
 #include "core/units.h"
 
 namespace dubsar {
@@ -18,6 +18,9 @@ constexpr double kReachDepths = 30.0;
 
 /// A rim is at the free surface within so many depths.
 constexpr double kLevelDepths = 0.2;
+
+/// Of a face that has no clay.
+constexpr double kNoneMm = 1e3;
 
 double angle_between(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
   return std::atan2(a.cross(b).norm(), a.dot(b));
@@ -47,62 +50,6 @@ void choose_directional(Wedge* wedge) {
   wedge->directional_by = longest == flattest ? DirectionalBy::kBoth
                           : length_decides    ? DirectionalBy::kLongest
                                               : DirectionalBy::kFlattest;
-}
-
-/// What the fits say of themselves takes every few vertices for independent. On scanned and stitched meshes
-/// neighbours err together: so many times as large is what the errors on simulated tablets are
-/// (dubsar-wedges prints them against these).
-constexpr double kPointTogether = 1.7;
-constexpr double kEdgeTogether = 1.8;
-constexpr double kPlaneTogether = 2.4;
-/// Where scans lay few samples across an impression, stitching rounds what lies between them: beyond so many
-/// spacings to a depth the sigmas grow, as the errors do. Fitted to simulated tablets scanned at µ 0.05,
-/// 0.075 and 0.1 mm, with true poses and with ones that are 20 µm off; of edges and depth points to sessions
-/// at µ 0.1 mm (noise 5 and 20 µm, seeds 1 and 3).
-constexpr double kFineSpacings = 0.15;
-constexpr double kCoarseGrowth = 4.0;
-constexpr double kCoarseFaceGrowth = 1.5;
-/// A face's direction is not known better: its clay is not quite even, and where others were pressed beside
-/// it neither is it a plane.
-constexpr double kFaceRad = 0.006;
-/// Of the free surface above an impression, which nobody has seen: where it lies, at least and as a share of
-/// the depth (its dam grows with a wedge, and so does what bridging it leaves open), and which way it looks.
-constexpr double kSurfaceMm = 0.02;
-constexpr double kSurfaceShare = 0.05;
-constexpr double kSurfaceRad = 0.013;
-
-void note_sigmas(const WedgeFaces& faces, const InnerEdges& edges, double spacing_mm, ExitDefinition exits,
-                 Wedge* wedge) {
-  WedgeSigma& sigma = wedge->sigma;
-  const double depth = std::max(wedge->depth_mm, 0.01);
-  const double beyond = std::max(0.0, spacing_mm / depth - kFineSpacings);
-  const double coarse = 1.0 + kCoarseGrowth * beyond;
-  const auto face_sigma = [&](std::size_t k) {
-    return std::hypot((1.0 + kCoarseFaceGrowth * beyond) * kPlaneTogether * faces.plane[k].sigma_rad,
-                      kFaceRad);
-  };
-  sigma.depth_point_mm = coarse * kPointTogether * edges.depth_point_sigma_mm;
-  sigma.depth_mm = std::hypot(sigma.depth_point_mm / std::sqrt(3.0),
-                              std::max(kSurfaceMm, kSurfaceShare * wedge->depth_mm));
-  double relative = 0;
-  for (std::size_t k = 0; k < 3; ++k) {
-    const InnerEdge& edge = edges.edge[k];
-    const double rise = std::max(edge.direction.z(), 0.03);
-    sigma.edge_rad[k] = coarse * kEdgeTogether * edge.sigma_rad;
-    sigma.edge_slope_rad[k] = std::hypot(sigma.edge_rad[k], kSurfaceRad);
-    sigma.length_mm[k] = std::hypot(sigma.depth_mm / rise, depth * sigma.edge_rad[k] / (rise * rise));
-    sigma.opening_rad[k] = std::hypot(face_sigma((k + 2) % 3), face_sigma(k));
-    sigma.face_slope_rad[k] = std::hypot(face_sigma(k), kSurfaceRad);
-    const double share = sigma.length_mm[k] / std::max(wedge->edge_lengths_mm[k], 1e-3);
-    relative += share * share;
-  }
-  for (std::size_t k = 0; k < 3; ++k) {
-    sigma.face_angle_rad[k] = std::hypot(sigma.edge_rad[k], sigma.edge_rad[(k + 1) % 3]);
-  }
-  sigma.volume_mm3 = wedge->volume_mm3 * std::sqrt(relative);
-  if (exits == ExitDefinition::kExtent) {
-    sigma.forget_lengths();
-  }
 }
 
 /// Whether the foot of p lies in the triangle of the three exits, seen along z (patch frame).
@@ -159,10 +106,11 @@ WedgeCandidate measure_wedge(const WedgePatch& patch, const WedgeFaces& faces, c
   const std::array<Eigen::Vector3d, 3>& exit = wedge.exit_points_mm;
   wedge.volume_mm3 =
       std::abs((exit[0] - depth_point).dot((exit[1] - depth_point).cross(exit[2] - depth_point))) / 6.0;
-  note_sigmas(faces, edges, patch.spacing_mm, exits, &wedge);
   choose_directional(&wedge);
 
   std::array<double, 3> seen{};
+  std::array<double, 3> gap_mm;
+  gap_mm.fill(kNoneMm);
   double inside = 0;
   double rim = 0;
   double level = 0;
@@ -185,6 +133,7 @@ WedgeCandidate measure_wedge(const WedgePatch& patch, const WedgeFaces& faces, c
       squares += off * off;
       weight += patch.weight[i];
       seen[k] += within ? area : 0.0;
+      gap_mm[k] = std::min(gap_mm[k], (p - edges.depth_point).norm());
       out.vertices.push_back(patch.vertex[i]);
       out.faces.push_back(faces.face[i]);
     }
@@ -204,6 +153,7 @@ WedgeCandidate measure_wedge(const WedgePatch& patch, const WedgeFaces& faces, c
   wedge.vertex_count = static_cast<int>(out.vertices.size());
   wedge.reliability = std::clamp(weight / count, 0.0, 1.0);
   wedge.intact = (out.coverage[0] + out.coverage[1] + out.coverage[2]) / 3.0;
+  note_sigmas(faces, edges, {out.coverage, gap_mm}, patch.spacing_mm, exits, &wedge);
   return out;
 }
 

@@ -20,7 +20,8 @@ namespace dubsar {
 
 /// Raised whenever the same mesh gives other wedges, or other words of them: what was kept by another method
 /// is measured anew. 2: edges are counted from the directional one; sigmas of slopes, and on coarse meshes
-/// larger. 3: faces are fitted away from creases and rims. 4: bowls and cones are none.
+/// larger. 3: faces are fitted away from creases and rims. 4: bowls and cones are none, sigmas
+/// follow what is missing of a wedge, each body of a mesh is measured alone.
 inline constexpr int kWedgeMethod = 4;
 
 struct WedgeOptions {

@@ -52,7 +52,9 @@ void compare(const Wedge& found, const Wedge& truth, WedgeScore* score) {
     score->opening_deg.push_back(deg_from_rad(opening));
     score->edge_sigmas.push_back(rad_from_deg(best_angles[k]) / found.sigma.edge_rad[f]);
     score->opening_sigmas.push_back(opening / found.sigma.opening_rad[f]);
-    score->length_sigmas.push_back(std::abs(length - true_length) / found.sigma.length_mm[f]);
+    if (std::isfinite(found.sigma.length_mm[f])) {
+      score->length_sigmas.push_back(std::abs(length - true_length) / found.sigma.length_mm[f]);
+    }
     score->face_angle_sigmas.push_back(std::abs(face_angle_off) / found.sigma.face_angle_rad[f]);
     score->length_off_um.push_back(1000.0 * (length - true_length));
     score->opening_off_deg.push_back(deg_from_rad(opening_off));

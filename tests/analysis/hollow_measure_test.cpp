@@ -90,5 +90,24 @@ TEST(HollowMeasure, HowFarOffTheLastContactIsNobodyKnows) {
   EXPECT_EQ(seen_last.sigma.depth_mm, at_surface.sigma.depth_mm);
 }
 
+TEST(HollowMeasure, WhereTheMeshEndsBeforeAnEdgeDoesNobodyKnowsItsLength) {
+  // The sheet ends at x = 0.8; the tail comes out at 2.
+  Hollow cut = hollow();
+  std::erase_if(cut.mesh.faces, [&](const auto& face) {
+    return std::ranges::any_of(face, [&](std::uint32_t v) { return cut.mesh.positions[v].x() > 0.8F; });
+  });
+  cut.graph = make_vertex_graph(cut.mesh);
+  cut.areas = vertex_areas(cut.mesh, cut.graph);
+  std::erase_if(cut.vertices, [&](std::uint32_t v) { return cut.graph.ring(v).empty(); });
+  const Wedge whole = hollow().measured(hollow().vertices, {});
+  const Wedge wedge = cut.measured(cut.vertices, {});
+  ASSERT_GT(wedge.exit_points_surface_mm[0].x(), 1.5);
+  EXPECT_TRUE(std::isnan(wedge.sigma.length_mm[0]));
+  EXPECT_TRUE(std::isnan(wedge.sigma.volume_mm3));
+  EXPECT_GT(wedge.sigma.length_mm[1], 0);
+  EXPECT_GT(wedge.sigma.length_mm[2], 0);
+  EXPECT_GT(whole.sigma.length_mm[0], 0);
+}
+
 }  // namespace
 }  // namespace dubsar
