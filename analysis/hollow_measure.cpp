@@ -122,7 +122,7 @@ Eigen::Vector3d HollowMeasure::up_over(std::span<const std::uint32_t> vertices) 
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   double area = 0;
   for (const std::uint32_t v : vertices) {
-    sum += areas_[v] * fields_.surface.normal(source_.position[v]).cast<double>();
+    sum += areas_[v] * fields_.surface_at(v).normal(source_.position[v]).cast<double>();
     area += areas_[v];
   }
   return sum.norm() > kLeastNormal * area ? Eigen::Vector3d(sum.normalized()) : Eigen::Vector3d::Zero();
@@ -130,12 +130,13 @@ Eigen::Vector3d HollowMeasure::up_over(std::span<const std::uint32_t> vertices) 
 
 /// The surface without impressions goes on where the mesh has ended: how far off an exit there is, and with
 /// it a length and the volume, nobody knows.
-void HollowMeasure::note_ends_in_air(double spacing_mm, WedgeCandidate* found) const {
+void HollowMeasure::note_ends_in_air(const HeightSurface& surface, double spacing_mm,
+                                     WedgeCandidate* found) const {
   constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
   Wedge& wedge = found->wedge;
   for (std::size_t k = 0; k < 3; ++k) {
     const Eigen::Vector3d& exit = wedge.exit_points_surface_mm[k];
-    const Eigen::Vector3f normal = fields_.surface.normal(exit.cast<float>());
+    const Eigen::Vector3f normal = surface.normal(exit.cast<float>());
     const Eigen::Vector3d up = normal.isZero() ? wedge.surface_normal : normal.cast<double>().eval();
     if (!mesh_reaches(mesh_, *source_.graph, found->vertices, exit, up, kEndSpacings * spacing_mm)) {
       wedge.sigma.length_mm[k] = kUnknown;
@@ -163,10 +164,14 @@ std::expected<WedgeCandidate, std::string> HollowMeasure::measure(
     return std::unexpected(faces.error());
   }
   const InnerEdges edges = find_inner_edges(patch, *faces);
-  WedgeCandidate found = measure_wedge(patch, *faces, edges, fields_.surface, areas_, options_.exits);
+  const HeightSurface& surface = fields_.surface_at(vertices.front());
+  WedgeCandidate found = measure_wedge(patch, *faces, edges, surface, areas_, options_.exits);
   found.floor_mm = patch.depth_mm;
   found.roundness = roundness_of(patch, *faces);
-  note_ends_in_air(patch.spacing_mm, &found);
+  note_ends_in_air(surface, patch.spacing_mm, &found);
+  if (!fields_.body_of.empty()) {
+    found.wedge.place.body = 1 + fields_.body_of[vertices.front()];
+  }
   number_from_directional_edge(&found);
   if (open != nullptr) {
     leftovers(patch, *faces, least_vertices(), open);

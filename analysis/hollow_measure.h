@@ -45,7 +45,7 @@ class HollowMeasure {
 
  private:
   [[nodiscard]] Eigen::Vector3d up_over(std::span<const std::uint32_t> vertices) const;
-  void note_ends_in_air(double spacing_mm, WedgeCandidate* found) const;
+  void note_ends_in_air(const HeightSurface& surface, double spacing_mm, WedgeCandidate* found) const;
 
   const Mesh& mesh_;
   const SurfaceFields& fields_;

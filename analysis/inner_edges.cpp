@@ -14,6 +14,8 @@ namespace dubsar {
 namespace {
 
 constexpr int kDraws = 60;
+/// Of every wedge the same: its contacts differ, and no number of the mesh's is to decide.
+constexpr std::uint64_t kSeed = 0;
 constexpr std::size_t kLeastContacts = 4;
 /// A curve is taken only when it explains so much more than the line.
 constexpr double kCurveGain = 1.1;
@@ -50,6 +52,8 @@ Eigen::Vector3d crease_between(const Eigen::Vector3d& a, const Eigen::Vector3d& 
   return middle + (shift.norm() > most ? Eigen::Vector3d(shift * (most / shift.norm())) : shift);
 }
 
+/// In the order in which they lie along the edges: what is drawn of them must not hang on how the vertices of
+/// the mesh are numbered.
 std::array<std::vector<Contact>, 3> find_contacts(const WedgePatch& patch, const WedgeFaces& faces) {
   std::array<std::vector<Contact>, 3> contacts;
   const double core_mm = std::max(2.0 * patch.spacing_mm, 0.2 * patch.depth_mm);
@@ -73,6 +77,9 @@ std::array<std::vector<Contact>, 3> find_contacts(const WedgePatch& patch, const
       const double reliability = fit_weight(std::min(patch.weight[v], patch.weight[n]));
       contacts[edge].push_back({p, reliability * near_centre});
     }
+  }
+  for (std::size_t edge = 0; edge < 3; ++edge) {
+    std::ranges::stable_sort(contacts[edge], {}, [&](const Contact& c) { return c.p.dot(faces.edge[edge]); });
   }
   return contacts;
 }
@@ -259,8 +266,7 @@ InnerEdges find_inner_edges(const WedgePatch& patch, const WedgeFaces& faces) {
   std::array<std::optional<Line>, 3> lines;
   const double tolerance_mm = std::max({0.03, 0.5 * patch.spacing_mm, 0.06 * patch.depth_mm});
   for (std::size_t k = 0; k < 3; ++k) {
-    lines[k] =
-        ransac_line(contacts[k], faces.edge[k], tolerance_mm, Random(seed_for(patch.vertex.front(), k)));
+    lines[k] = ransac_line(contacts[k], faces.edge[k], tolerance_mm, Random(seed_for(kSeed, k)));
   }
   InnerEdges out;
   out.depth_point = shared_point(faces, lines, &out.depth_point_sigma_mm);
@@ -282,7 +288,7 @@ InnerEdges find_inner_edges(const WedgePatch& patch, const WedgeFaces& faces) {
       edge.off_planes_rad =
           std::atan2(line.direction.cross(faces.edge[k]).norm(), line.direction.dot(faces.edge[k]));
       edge.bow_mm = bow_of(contacts[k], line, kCurveTolerance * tolerance_mm, &edge.extent_mm,
-                           Random(seed_for(patch.vertex.front(), 3 + k)));
+                           Random(seed_for(kSeed, 3 + k)));
       const double w_line = 1.0 / (line.sigma_rad * line.sigma_rad);
       const double w_planes = 1.0 / (sigma_planes * sigma_planes);
       edge.direction = (w_line * line.direction + w_planes * faces.edge[k]).normalized();

@@ -8,7 +8,9 @@
 
 #include "analysis/buckets.h"
 #include "analysis/height_map.h"
+#include "core/near_cells.h"
 #include "core/parallel.h"
+#include "core/random.h"
 
 namespace dubsar {
 namespace {
@@ -22,6 +24,8 @@ constexpr double kResolvedPixels = 2.5;
 /// Places within a pixel for which the sphere is tabulated, to a side.
 constexpr int kSubPixels = 4;
 constexpr std::size_t kLanes = 8;
+/// Of a disc beside the end of the mesh this share at least must hold clay: a corner of it holds a quarter.
+constexpr float kLeastSeen = 0.15F;
 /// Faces whose vertices look further away from a map's direction than this (cosine) are not drawn into it:
 /// the next direction is never more than 28 degrees away.
 constexpr float kDrawn = 0.45F;
@@ -153,6 +157,70 @@ float clamped_sum(const Disc& disc, const float* middle, std::ptrdiff_t row_step
   return ((sums[0] + sums[1]) + (sums[2] + sums[3])) + ((sums[4] + sums[5]) + (sums[6] + sums[7]));
 }
 
+/// How a plane through the middle of a disc rises, mm a pixel, and where the middle lies, pixels from that of
+/// its pixel.
+struct Tilt {
+  float x_mm = 0, y_mm = 0;
+  float middle_x_px = 0, middle_y_px = 0;
+};
+
+/// clamped_sum() less that of the plane, over the sum of what it is clamped to, of the pixels that hold clay
+/// alone: over a whole disc the plane's is none. 0 where these are too little of the disc to tell.
+float mean_over_clay(const Disc& disc, const float* middle, std::ptrdiff_t row_step, float z,
+                     const Tilt& tilt) {
+  float sum = 0;
+  float seen = 0;
+  for (const Disc::Row& row : disc.rows) {
+    const float* const h = middle + row.dy * row_step + row.dx;
+    const float* const half = &disc.half_mm[row.begin];
+    const float row_rise = tilt.y_mm * (static_cast<float>(row.dy) - tilt.middle_y_px);
+    for (std::size_t k = 0; k < row.blocks * kLanes; ++k) {
+      if (std::isfinite(h[k])) {
+        const float dx = static_cast<float>(row.dx) + static_cast<float>(k) - tilt.middle_x_px;
+        sum += std::clamp(h[k] - z, -half[k], half[k]) -
+               std::clamp(row_rise + tilt.x_mm * dx, -half[k], half[k]);
+        seen += half[k];
+      }
+    }
+  }
+  return seen > kLeastSeen * disc.sum_mm ? std::clamp(sum / seen, -1.0F, 1.0F) : 0.0F;
+}
+
+/// Of every vertex how far the nearest end of the mesh is, up to reach_mm. [V]
+std::vector<float> border_distances(const Mesh& mesh, double reach_mm) {
+  // Around a vertex inside each neighbour belongs to two faces, whichever way these run.
+  std::vector<std::uint64_t> odd(mesh.positions.size(), 0);
+  for (const auto& f : mesh.faces) {
+    if (std::ranges::any_of(f, [&](std::uint32_t v) { return v >= odd.size(); })) {
+      continue;
+    }
+    for (std::size_t k = 0; k < 3; ++k) {
+      odd[f[k]] ^= seed_for(0, f[(k + 1) % 3]) ^ seed_for(0, f[(k + 2) % 3]);
+    }
+  }
+  NearCells ends(reach_mm);
+  for (std::size_t v = 0; v < odd.size(); ++v) {
+    if (odd[v] != 0 && mesh.positions[v].allFinite()) {
+      ends.add(mesh.positions[v].cast<double>(), v);
+    }
+  }
+  std::vector<float> distance(odd.size(), static_cast<float>(reach_mm));
+  parallel_for_each_index(
+      distance.size(),
+      [&](std::size_t v) {
+        if (!mesh.positions[v].allFinite()) {
+          return;
+        }
+        float least = distance[v] * distance[v];
+        for (const std::size_t end : ends.about(mesh.positions[v].cast<double>())) {
+          least = std::min(least, (mesh.positions[end] - mesh.positions[v]).squaredNorm());
+        }
+        distance[v] = std::sqrt(least);
+      },
+      kGrain);
+  return distance;
+}
+
 /// Discs of all scales for all places within a pixel: [place][scale].
 class Discs {
  public:
@@ -206,6 +274,10 @@ IntegralInvariants integral_invariants(const Mesh& mesh, const std::vector<Vecto
   const Discs discs(result.radii_mm, pixel_mm);
   const int margin = static_cast<int>(std::ceil(options.radius_mm / pixel_mm)) + 2 + static_cast<int>(kLanes);
 
+  // The pixel at the end of the mesh may be empty although clay begins in it.
+  const auto beside_mm = static_cast<float>(2 * pixel_mm);
+  const std::vector<float> border_mm = border_distances(mesh, options.radius_mm + 2.5 * pixel_mm);
+
   const std::vector<Vector3f> ways = directions();
   const Drawn drawn = make_drawn(mesh, outlook, ways);
   const Buckets by_way =
@@ -239,9 +311,14 @@ IntegralInvariants integral_invariants(const Mesh& mesh, const std::vector<Vecto
           const Discs::Place disc = discs.at(at.x() - x, at.y() - y);
           const float z = at.z() - map.rise_mm(outlook[v], disc.past_x_px, disc.past_y_px);
           const float* const middle = map.row(static_cast<int>(y)) + static_cast<int>(x);
+          const Tilt tilt{map.rise_mm(outlook[v], 1, 0), map.rise_mm(outlook[v], 0, 1),
+                          at.x() - x - disc.past_x_px, at.y() - y - disc.past_y_px};
           for (std::size_t s = 0; s < scales; ++s) {
+            const Disc& at_scale = disc.by_scale[s];
             result.value[v * scales + s] =
-                clamped_sum(disc.by_scale[s], middle, map.row_step(), z) / disc.by_scale[s].sum_mm;
+                border_mm[v] < result.radii_mm[s] + beside_mm
+                    ? mean_over_clay(at_scale, middle, map.row_step(), z, tilt)
+                    : clamped_sum(at_scale, middle, map.row_step(), z) / at_scale.sum_mm;
           }
         },
         kGrain);

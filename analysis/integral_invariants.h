@@ -27,9 +27,11 @@ struct IntegralInvariants {
 /// outlook: [V] unit normals of the surface at large, out of the clay (those of the height surface serve
 /// best; zero: none). Where GigaMesh rasters the patch of every vertex anew, the surface is drawn here into
 /// one height map per direction of a few that cover the sphere, and a vertex reads the map that its outlook
-/// is nearest to: the volume below a surface does not depend on the direction one sums it up in. Beyond the
-/// border of the mesh there is nothing. Sphere radii below two pixels of the map (the larger of R/16 and the
-/// mean edge) are as coarse as these. Empty when cancelled; the same for any number of threads.
+/// is nearest to: the volume below a surface does not depend on the direction one sums it up in. Where a
+/// sphere reaches beyond an end of the mesh, a border or a hole, f is that of the part over which there is
+/// clay, so that a plane reads 0 up to its border; 0 where that is less than 15 %. Sphere radii below two
+/// pixels of the map (the larger of R/16 and the mean edge) are as coarse as these. Empty when cancelled; the
+/// same for any number of threads.
 [[nodiscard]] IntegralInvariants integral_invariants(const Mesh& mesh,
                                                      const std::vector<Eigen::Vector3f>& outlook,
                                                      double mean_edge_mm,

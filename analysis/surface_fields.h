@@ -29,7 +29,18 @@ struct SurfaceFields {
   std::vector<std::uint8_t> free_surface;  ///< 1: free surface
   std::vector<float> height_mm;            ///< signed distance to `surface`; negative below it
   double mean_edge_mm = 0;
-  HeightSurface surface;  ///< the reconstructed surface, for exit points and outer edges
+  HeightSurface surface;  ///< the reconstructed surface, for exit points and outer edges; of the first body
+  /// Where the mesh holds several bodies (analysis/mesh_bodies.h): the body of each vertex, [V], and the
+  /// surfaces of all but the first. Both empty where it holds one.
+  std::vector<std::uint8_t> body_of;
+  std::vector<HeightSurface> further_surfaces;
+
+  [[nodiscard]] std::size_t body_count() const { return 1 + further_surfaces.size(); }
+  /// That of the body which the vertex belongs to.
+  [[nodiscard]] const HeightSurface& surface_at(std::uint32_t vertex) const {
+    const std::size_t body = body_of.empty() ? 0 : body_of[vertex];
+    return body == 0 ? surface : further_surfaces[body - 1];
+  }
 };
 
 struct SurfaceFieldOptions {
@@ -46,7 +57,8 @@ struct SurfaceFieldOptions {
 /// vertex's own where that is out of reach.
 [[nodiscard]] std::vector<Eigen::Vector3f> outlook_of(const Mesh& mesh, const SurfaceFields& fields);
 
-/// All fields of a mesh in millimetres, faults and all. The same bytes for any number of threads.
+/// All fields of a mesh in millimetres, faults and all: of each body as if it were alone. The same bytes for
+/// any number of threads.
 /// Errors: kBadInput for a mesh without a face that has an area, kCancelled.
 [[nodiscard]] Result<SurfaceFields> compute_surface_fields(const Mesh& mesh, const VertexGraph& graph,
                                                            const SurfaceFieldOptions& options,

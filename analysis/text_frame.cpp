@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
+#include <utility>
 
 #include "analysis/text_lines.h"
 #include "core/tablet_frame.h"
@@ -95,7 +97,7 @@ TextFrame find_text_frame(const Mesh& mesh, const std::vector<Wedge>& wedges) {
 }
 
 void place_wedges(const TextFrame& frame, std::vector<Wedge>* wedges) {
-  std::array<std::vector<std::size_t>, 6> on_side;
+  std::map<std::pair<Face, int>, std::vector<std::size_t>> on_side;  // of one body
   std::vector<LineMember> members(wedges->size());
   for (std::size_t i = 0; i < wedges->size(); ++i) {
     Wedge& wedge = (*wedges)[i];
@@ -113,17 +115,21 @@ void place_wedges(const TextFrame& frame, std::vector<Wedge>* wedges) {
     }
     const Eigen::Vector3d depth_point = frame.text_from_model * wedge.depth_point_mm;
     member.along = depth_point.dot(side.right);
-    on_side[static_cast<std::size_t>(side.face)].push_back(i);
+    on_side[{side.face, wedge.place.body}].push_back(i);
   }
-  for (const std::vector<std::size_t>& some : on_side) {
+  std::map<Face, int> last_line;
+  for (const auto& [where, some] : on_side) {
     std::vector<LineMember> here;
     here.reserve(some.size());
     for (const std::size_t i : some) {
       here.push_back(members[i]);
     }
     find_lines(&here);
+    const int before = last_line[where.first];
     for (std::size_t k = 0; k < some.size(); ++k) {
-      (*wedges)[some[k]].place.line = here[k].line;
+      const int line = before + here[k].line;
+      last_line[where.first] = std::max(last_line[where.first], line);
+      (*wedges)[some[k]].place.line = line;
       (*wedges)[some[k]].place.order = here[k].order;
     }
   }

@@ -28,7 +28,8 @@ struct TextFrame {
 [[nodiscard]] TextFrame find_text_frame(const Mesh& mesh, const std::vector<Wedge>& wedges);
 
 /// Gives each wedge its side, its line on that side, its order in the line and its turn. Lines are found
-/// where fewest wedges are cut by the gap between them; a lone line is line 1.
+/// where fewest wedges are cut by the gap between them; a lone line is line 1. No line runs over two bodies
+/// (place.body): a side's lines are counted on from one body to the next.
 void place_wedges(const TextFrame& frame, std::vector<Wedge>* wedges);
 
 }  // namespace dubsar

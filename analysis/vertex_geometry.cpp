@@ -8,7 +8,6 @@
 #include <cmath>
 #include <utility>
 
-#include "core/disjoint_sets.h"
 #include "core/inside_out.h"
 #include "core/order_statistics.h"
 #include "core/parallel.h"
@@ -28,6 +27,8 @@ Eigen::Vector3f twice_area(const Mesh& mesh, std::uint32_t face) {
 
 /// A part of the mesh that hangs together and has this share of its area is looked at by itself.
 constexpr double kLargePart = 0.05;
+/// One that has no more than this is a scrap: it must not move the box, and with it the grids, of the rest.
+constexpr double kScrap = 0.001;
 
 struct Sums {
   double area = 0;
@@ -90,49 +91,15 @@ bool looks_inward(const Mesh& mesh, const VertexGeometry& geometry, const IsOne&
   return Facing{first.area, second.normals, second.outward, second.spread}.is_inward();
 }
 
-/// The least vertex of the part that each vertex hangs together with, [V], and those of the large parts.
-struct Parts {
-  std::vector<std::uint32_t> of;
-  std::vector<std::uint32_t> large;
-};
-
-Parts find_parts(const VertexGraph& graph, const VertexGeometry& geometry) {
-  const std::size_t vertices = graph.vertex_count();
-  DisjointSets sets(vertices);
-  parallel_for_each_index(
-      vertices,
-      [&](std::size_t v) {
-        for (const std::uint32_t w : graph.ring(static_cast<std::uint32_t>(v))) {
-          if (w > v) {
-            sets.unite(static_cast<std::uint32_t>(v), w);
-          }
-        }
-      },
-      kGrain);
-  Parts parts;
-  parts.of.resize(vertices);
-  parallel_for_each_index(
-      vertices, [&](std::size_t v) { parts.of[v] = sets.root(static_cast<std::uint32_t>(v)); }, kGrain);
-  std::vector<double> area(vertices, 0.0);
-  for (std::size_t v = 0; v < vertices; ++v) {
-    area[parts.of[v]] += geometry.area_mm2[v];
-  }
-  for (std::size_t v = 0; v < vertices; ++v) {
-    if (area[v] > kLargePart * geometry.total_area_mm2) {
-      parts.large.push_back(static_cast<std::uint32_t>(v));
-    }
-  }
-  return parts;
-}
-
 /// Turns the normals that look into the clay: of each large part by itself (two fragments in one file may run
 /// either way), of the scraps as of the whole.
-void turn_outward(const Mesh& mesh, const VertexGraph& graph, VertexGeometry* geometry) {
+void turn_outward(const Mesh& mesh, VertexGeometry* geometry) {
   geometry->turned = looks_inward(mesh, *geometry, [](std::size_t) { return true; });
-  const Parts parts = find_parts(graph, *geometry);
+  const MeshParts& parts = geometry->parts;
+  const std::vector<std::uint32_t> large = parts.larger_than(kLargePart);
   std::vector<bool> turned(mesh.positions.size(), geometry->turned);
-  if (parts.large.size() > 1) {
-    for (const std::uint32_t part : parts.large) {
+  if (large.size() > 1) {
+    for (const std::uint32_t part : large) {
       turned[part] = looks_inward(mesh, *geometry, [&](std::size_t i) { return parts.of[i] == part; });
     }
   }
@@ -169,35 +136,52 @@ void at_vertex(const Mesh& mesh, std::span<const std::uint32_t> faces, Eigen::Ve
   *area = std::isfinite(whole) ? whole / 6.0F : 0.0F;
 }
 
-/// Evenly taken from the vertices that have an area, about so many: vertices of no face, left over by another
-/// program, change nothing.
-std::vector<std::uint32_t> some_with_area(const VertexGeometry& geometry, std::size_t about) {
-  const auto count = static_cast<std::size_t>(
-      std::ranges::count_if(geometry.area_mm2, [](float area_mm2) { return area_mm2 > 0; }));
+/// [V] whether the vertex has an area, but for those of scraps, unless scraps are most there is.
+std::vector<bool> of_no_scrap(const VertexGeometry& geometry) {
+  const MeshParts& parts = geometry.parts;
+  std::vector<bool> is_large(parts.of.size(), false);
+  double area_mm2 = 0;
+  for (const std::uint32_t part : parts.larger_than(kScrap)) {
+    is_large[part] = true;
+    area_mm2 += parts.area_mm2[part];
+  }
+  const bool all = area_mm2 < 0.5 * geometry.total_area_mm2;
+  std::vector<bool> counts(parts.of.size());
+  for (std::size_t v = 0; v < counts.size(); ++v) {
+    counts[v] = geometry.area_mm2[v] > 0 && (all || is_large[parts.of[v]]);
+  }
+  return counts;
+}
+
+/// Evenly taken from those that count, about so many: vertices of no face, left over by another program,
+/// change nothing.
+std::vector<std::uint32_t> some_of(const std::vector<bool>& counts, std::size_t about) {
+  const auto count = static_cast<std::size_t>(std::ranges::count(counts, true));
   const std::size_t stride = std::max<std::size_t>(1, count / about);
   std::vector<std::uint32_t> some;
   some.reserve(count / stride + 1);
   std::size_t k = 0;
-  for (std::size_t v = 0; v < geometry.area_mm2.size(); ++v) {
-    if (geometry.area_mm2[v] > 0 && k++ % stride == 0) {
+  for (std::size_t v = 0; v < counts.size(); ++v) {
+    if (counts[v] && k++ % stride == 0) {
       some.push_back(static_cast<std::uint32_t>(v));
     }
   }
   return some;
 }
 
-Eigen::AlignedBox3f box_without_strays(const Mesh& mesh, const VertexGeometry& geometry) {
+Eigen::AlignedBox3f box_without_strays(const Mesh& mesh, const std::vector<bool>& counts,
+                                       double mean_edge_mm) {
   constexpr std::size_t kSampled = 200000;
   constexpr double kStray = 0.001;
   constexpr float kBeyond = 0.05F;
   Eigen::AlignedBox3f whole;
   for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
-    if (geometry.area_mm2[v] > 0) {
+    if (counts[v]) {
       whole.extend(mesh.positions[v]);
     }
   }
   std::array<std::vector<float>, 3> sampled;
-  for (const std::uint32_t v : some_with_area(geometry, kSampled)) {
+  for (const std::uint32_t v : some_of(counts, kSampled)) {
     for (Eigen::Index axis = 0; axis < 3; ++axis) {
       sampled[static_cast<std::size_t>(axis)].push_back(mesh.positions[v][axis]);
     }
@@ -211,7 +195,7 @@ Eigen::AlignedBox3f box_without_strays(const Mesh& mesh, const VertexGeometry& g
     const auto skip = static_cast<std::size_t>(kStray * static_cast<double>(at.size()));
     const float low = value_at_rank(at, skip);
     const float high = value_at_rank(at, at.size() - 1 - skip);
-    const float beyond = kBeyond * (high - low) + 2.0F * static_cast<float>(geometry.mean_edge_mm);
+    const float beyond = kBeyond * (high - low) + 2.0F * static_cast<float>(mean_edge_mm);
     box.min()[axis] = std::max(whole.min()[axis], low - beyond);
     box.max()[axis] = std::min(whole.max()[axis], high + beyond);
   }
@@ -219,9 +203,10 @@ Eigen::AlignedBox3f box_without_strays(const Mesh& mesh, const VertexGeometry& g
 }
 
 /// The standard deviation where it is noise, from the median over about kSampled vertices.
-double roughness(const Mesh& mesh, const VertexGraph& graph, const VertexGeometry& geometry) {
+double roughness(const Mesh& mesh, const VertexGraph& graph, const VertexGeometry& geometry,
+                 const std::vector<bool>& counts) {
   constexpr std::size_t kSampled = 100000;
-  const std::vector<std::uint32_t> some = some_with_area(geometry, kSampled);
+  const std::vector<std::uint32_t> some = some_of(counts, kSampled);
   std::vector<float> away(some.size());
   parallel_for_each_index(away.size(), [&](std::size_t k) {
     const std::uint32_t v = some[k];
@@ -272,9 +257,11 @@ VertexGeometry make_vertex_geometry(const Mesh& mesh, const VertexGraph& graph) 
   if (!(first.area > 0)) {
     return geometry;
   }
-  geometry.box = box_without_strays(mesh, geometry);
-  geometry.roughness_mm = roughness(mesh, graph, geometry);
-  turn_outward(mesh, graph, &geometry);
+  geometry.parts = find_parts(graph, geometry.area_mm2);
+  const std::vector<bool> counts = of_no_scrap(geometry);
+  geometry.box = box_without_strays(mesh, counts, geometry.mean_edge_mm);
+  geometry.roughness_mm = roughness(mesh, graph, geometry, counts);
+  turn_outward(mesh, &geometry);
   return geometry;
 }
 

@@ -6,6 +6,7 @@
 #include <Eigen/Geometry>
 #include <vector>
 
+#include "analysis/mesh_parts.h"
 #include "analysis/vertex_graph.h"
 #include "core/mesh.h"
 
@@ -20,8 +21,11 @@ struct VertexGeometry {
   /// Half the vertices lie within 2/3 of this of the middle of their neighbours, along the normal: the noise
   /// of a scan, or how rough the clay is at the scale of the mesh.
   double roughness_mm = 0;
-  /// Around the vertices with an area, but for the few (1 in 1000 on a side) that lie off by more than a
-  /// twentieth of the rest: a stray scrap a metre away must not decide how fine a grid around a tablet is.
+  MeshParts parts;  ///< that hang together; empty without an area
+  /// Around the vertices with an area, but for those of scraps: parts of the mesh with less than a thousandth
+  /// of its area, as long as they are not most of it. Wherever one lies, it must not move the grids. And but
+  /// for the few (1 in 1000 on a side) that lie off by more than a twentieth of the rest, which must not
+  /// decide how fine a grid around a tablet is.
   Eigen::AlignedBox3f box;
   bool turned = false;  ///< the faces by and large run clockwise seen from outside; the normals were turned
 };

@@ -9,6 +9,7 @@
 
 #include "analysis/height_noise.h"
 #include "analysis/hollow_measure.h"
+#include "analysis/mesh_bodies.h"
 #include "analysis/wedge_corrections.h"
 #include "analysis/wedge_fragments.h"
 #include "core/parallel.h"
@@ -36,11 +37,10 @@ BasinOptions basin_options(const WedgeOptions& options, const std::vector<float>
   return out;
 }
 
-}  // namespace
-
-Result<WedgeFindings> find_candidates(const Mesh& mesh, const VertexGraph& graph, const SurfaceFields& fields,
-                                      const WedgeOptions& options, const JobContext& job,
-                                      StageTimes* timings_s) {
+/// Of a mesh that is one body.
+Result<WedgeFindings> candidates_of_body(const Mesh& mesh, const VertexGraph& graph,
+                                         const SurfaceFields& fields, const WedgeOptions& options,
+                                         const JobContext& job, StageTimes* timings_s) {
   LapClock clock(timings_s);
   const auto cancelled = [] { return fail(ErrorKind::kCancelled, "stopped while finding wedges"); };
   job.progress("watershed", 0);
@@ -83,6 +83,71 @@ Result<WedgeFindings> find_candidates(const Mesh& mesh, const VertexGraph& graph
   out.basin_of = std::move(basins.label);
   clock.done("judging");
   return out;
+}
+
+/// What is known of some vertices of the whole, as of a mesh of theirs.
+SurfaceFields some_fields(const SurfaceFields& whole, const std::vector<std::uint32_t>& vertices) {
+  SurfaceFields some;
+  const auto take = [&](const auto& from, auto* to) {
+    to->reserve(vertices.size());
+    for (const std::uint32_t v : vertices) {
+      to->push_back(from[v]);
+    }
+  };
+  take(whole.reliability, &some.reliability);
+  take(whole.normal, &some.normal);
+  take(whole.mean_curvature_per_mm, &some.mean_curvature_per_mm);
+  take(whole.gaussian_curvature_per_mm2, &some.gaussian_curvature_per_mm2);
+  take(whole.openness, &some.openness);
+  take(whole.free_surface, &some.free_surface);
+  take(whole.height_mm, &some.height_mm);
+  some.mean_edge_mm = whole.mean_edge_mm;
+  some.surface = whole.surface_at(vertices.front());
+  return some;
+}
+
+/// Adds what was found on one body to what was found on those before it.
+void join(const std::vector<std::uint32_t>& vertex, std::size_t body, WedgeFindings some,
+          WedgeFindings* all) {
+  const std::int32_t first_basin = 1 + *std::ranges::max_element(all->basin_of);
+  for (std::size_t i = 0; i < vertex.size(); ++i) {
+    const std::int32_t basin = some.basin_of[i];
+    all->basin_of[vertex[i]] = basin < 0 ? basin : basin + std::max(first_basin, 0);
+    all->area_mm2[vertex[i]] = some.area_mm2[i];
+  }
+  for (WedgeCandidate& c : some.candidates) {
+    for (std::uint32_t& v : c.vertices) {
+      v = vertex[v];
+    }
+    c.wedge.place.body = static_cast<int>(body) + 1;
+    all->candidates.push_back(std::move(c));
+  }
+  all->noise_mm = std::max(all->noise_mm, some.noise_mm);
+}
+
+}  // namespace
+
+Result<WedgeFindings> find_candidates(const Mesh& mesh, const VertexGraph& graph, const SurfaceFields& fields,
+                                      const WedgeOptions& options, const JobContext& job,
+                                      StageTimes* timings_s) {
+  if (fields.body_of.empty()) {
+    return candidates_of_body(mesh, graph, fields, options, job, timings_s);
+  }
+  WedgeFindings all;
+  all.basin_of.assign(mesh.positions.size(), kFreeSurfaceLabel);
+  all.area_mm2.assign(mesh.positions.size(), 0.0F);
+  for (std::size_t body = 0; body < fields.body_count(); ++body) {
+    const BodyMesh part = body_mesh(mesh, fields.body_of, body);
+    StageTimes times;
+    Result<WedgeFindings> found = candidates_of_body(part.mesh, make_vertex_graph(part.mesh),
+                                                     some_fields(fields, part.vertex), options, job, &times);
+    if (!found) {
+      return found;
+    }
+    join(part.vertex, body, *std::move(found), &all);
+    add_times(times, timings_s);
+  }
+  return all;
 }
 
 WedgeSet settle_wedges(const Mesh& mesh, const VertexGraph& graph, const SurfaceFields& fields,

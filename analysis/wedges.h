@@ -41,7 +41,7 @@ struct WedgeFindings {
   std::vector<WedgeCandidate> candidates;  ///< judged
   std::vector<std::int32_t> basin_of;      ///< [V] see Basins::label
   std::vector<float> area_mm2;             ///< [V] of the surface that the vertex stands for
-  double noise_mm = 0;                     ///< of the heights
+  double noise_mm = 0;                     ///< of the heights; of the noisiest body
 };
 
 /// The wedges of a tablet.
@@ -62,6 +62,7 @@ struct WedgeSet {
                                            const SurfaceFields& fields, const WedgeOptions& options,
                                            const JobContext& job, StageTimes* timings_s = nullptr);
 
+/// Each body of the mesh by itself, as if it were alone.
 [[nodiscard]] Result<WedgeFindings> find_candidates(const Mesh& mesh, const VertexGraph& graph,
                                                     const SurfaceFields& fields, const WedgeOptions& options,
                                                     const JobContext& job, StageTimes* timings_s = nullptr);

@@ -57,6 +57,7 @@ struct WedgePlace {
   int line = 0;         ///< from 1, down the side; 0 when not known
   int order = 0;        ///< from 1, along the line; 0 when not known
   double turn_rad = 0;  ///< of the directional edge away from the depth point: 0 right, pi/2 up the side
+  int body = 0;         ///< of the mesh, from 1 by falling area; 0 where it holds one only
 };
 
 /// Whether a person had a say in where the wedge is: its measures are made by the same code all the same.

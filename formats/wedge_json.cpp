@@ -139,6 +139,9 @@ OrderedJson place_json(const WedgePlace& place) {
     json["order"] = place.order;
   }
   json["turn_deg"] = deg_from_rad(place.turn_rad);
+  if (place.body > 0) {
+    json["body"] = place.body;
+  }
   return json;
 }
 
@@ -151,6 +154,9 @@ WedgePlace place_from(const JsonNode& node) {
     place.order = static_cast<int>(node.at("order").integer(1, kMaxInt));
   }
   place.turn_rad = rad_from_deg(node.at("turn_deg").number());
+  if (const auto body = node.find("body")) {
+    place.body = static_cast<int>(body->integer(1, kMaxInt));
+  }
   return place;
 }
 

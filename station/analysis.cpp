@@ -78,6 +78,16 @@ void correct_analysis(const Mesh& mesh, const AnalysisOptions& options, Analysis
   place_wedges(analysis->text, &analysis->set.wedges);
 }
 
+void warn_of_bodies(const Analysis& analysis, const std::string& where) {
+  if (const std::size_t bodies = analysis.fields.body_count(); bodies > 1) {
+    log_warning(fmt::format(
+        "{}: {} bodies in one mesh: each is measured as if it were alone, and place.body tells them apart; "
+        "which "
+        "side is which is told of all together: give each a file of its own where they do not lie alike",
+        where, bodies));
+  }
+}
+
 void warn_of_lost(const Analysis& analysis, const std::string& where) {
   for (const LostCorrection& lost : analysis.set.lost) {
     log_warning(fmt::format("{}: correction {} is not made: {}", where, lost.index + 1, lost.reason));

@@ -40,6 +40,9 @@ struct Analysis {
 /// corrections that cannot be made are in set.lost.
 void correct_analysis(const Mesh& mesh, const AnalysisOptions& options, Analysis* analysis);
 
+/// A line of the log where the mesh holds several bodies.
+void warn_of_bodies(const Analysis& analysis, const std::string& where);
+
 /// A line of the log for each correction that could not be made.
 void warn_of_lost(const Analysis& analysis, const std::string& where);
 

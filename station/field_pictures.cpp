@@ -34,6 +34,16 @@ Status write_coloured(const fs::path& folder, const std::string& name, const Mes
   return write_six_view_picture(folder / (name + ".png"), coloured, tablet_from_model, job);
 }
 
+/// Both have normals and nothing else beside.
+void add_mesh(const Mesh& more, Mesh* mesh) {
+  const auto first = static_cast<std::uint32_t>(mesh->positions.size());
+  mesh->positions.insert(mesh->positions.end(), more.positions.begin(), more.positions.end());
+  mesh->normals.insert(mesh->normals.end(), more.normals.begin(), more.normals.end());
+  for (const auto& [a, b, c] : more.faces) {
+    mesh->faces.push_back({a + first, b + first, c + first});
+  }
+}
+
 }  // namespace
 
 Status write_six_view_picture(const fs::path& png, const Mesh& mesh, const RigidTransform& tablet_from_model,
@@ -69,6 +79,9 @@ Status write_field_pictures(const fs::path& folder, const Mesh& mesh, const Rigi
     }
   }
   Mesh surface = fields.surface.mesh();
+  for (const HeightSurface& further : fields.further_surfaces) {
+    add_mesh(further.mesh(), &surface);
+  }
   const VertexGraph graph = make_vertex_graph(surface);
   const Curvature curvature = vertex_curvature(surface, graph, make_vertex_geometry(surface, graph));
   surface.colours = diverging_colours(curvature.mean_per_mm, 0, kSurfaceCurvaturePerMm);

@@ -254,6 +254,7 @@ Result<int> analyze(const AnalyzeArguments& arguments, CommandContext& context) 
   if (const Status made = check_corrected(arguments, corrections_file, *analysis); !made) {
     return std::unexpected(made.error());
   }
+  warn_of_bodies(*analysis, arguments.in);
   warn_of_others(arguments, *said, corrections_file);
   warn_of_lost(*analysis, corrections_file.string());
   warn_of_coarse(*analysis, arguments.in);

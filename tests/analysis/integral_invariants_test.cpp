@@ -70,6 +70,30 @@ TEST(IntegralInvariants, AreTheSameForAnyNumberOfThreads) {
   EXPECT_TRUE(many.value == integral_invariants(mesh, outlook, 0.12, {}, job).value);
 }
 
+TEST(IntegralInvariants, OnAPlaneAreNoneUpToItsBorderAndRoundAHole) {
+  Mesh mesh = shapes::sheet(4, 160, [](float x, float y) { return 0.3F * x - 0.2F * y; });
+  std::erase_if(mesh.faces, [](const auto& f) {
+    const auto in = [](std::uint32_t v) {
+      return v / 161 > 70 && v / 161 < 90 && v % 161 > 70 && v % 161 < 90;
+    };
+    return in(f[0]) || in(f[1]) || in(f[2]);
+  });
+  const IntegralInvariants plane = of_sheet(mesh, {-0.3F, 0.2F, 1}, 0.05);
+  for (const std::size_t v :
+       {80U, 80U * 161, 5U * 161 + 40, 70U * 161 + 80, 65U * 161 + 80, 0U, 161U * 161 - 1}) {
+    const std::vector<float> f = at(plane, v);
+    for (std::size_t s = 0; s < 12; ++s) {  // radii above 0.25 mm
+      EXPECT_NEAR(f[s], 0, 0.03) << v << ' ' << s;
+    }
+  }
+  // The ridge beside a border is as sharp as any.
+  const Mesh ridge = shapes::sheet(4, 160, [](float x, float) { return -std::abs(x); });
+  const std::vector<float> f = at(of_sheet(ridge, {0, 0, 1}, 0.05), 80);
+  for (std::size_t s = 0; s < 12; ++s) {
+    EXPECT_NEAR(f[s], -0.5, 0.06) << s;
+  }
+}
+
 /// At the bottom of a V of half-angle 45° three quarters of the sphere are clay, whatever its size.
 TEST(IntegralInvariants, InAValleyAndOnARidgeAreOppositeAndTheSameAtAllScales) {
   const Mesh valley = shapes::sheet(4, 160, [](float x, float) { return std::abs(x); });

@@ -39,7 +39,7 @@ TEST(WedgesJson, ReadsBackAllThatWasMeasured) {
   wedge.sigma.edge_slope_rad = {0.7, 0.8, 0.9};
   wedge.sigma.length_mm = {0.25, 0.5, 0.75};
   wedge.sigma.volume_mm3 = 0.75;
-  wedge.place = {Face::kReverse, 4, 17, -1.5};
+  wedge.place = {Face::kReverse, 4, 17, -1.5, 2};
   file.wedges = {wedge, Wedge{}};
   file.rejected = {{"too shallow", {7, 8, 9}}};
   file.timings_s = {{"reading", 0.5}};
@@ -86,6 +86,7 @@ TEST(WedgesJson, ReadsBackAllThatWasMeasured) {
   EXPECT_EQ(w.place.side, Face::kReverse);
   EXPECT_EQ(w.place.line, 4);
   EXPECT_EQ(w.place.order, 17);
+  EXPECT_EQ(w.place.body, 2);
   EXPECT_FALSE(back->wedges[1].place.side);
   ASSERT_EQ(back->rejected.size(), 1U);
   EXPECT_EQ(back->rejected[0].reason, "too shallow");
