@@ -86,6 +86,30 @@ Status first_values(const std::vector<CalibrationView>& views, const Intrinsics&
   return {};
 }
 
+/// How far a slide's millimetre is from one by the board, as a share.
+double scale_off(const JointState& state) {
+  return state.has_stage && state.motion.kind == MotionKind::kLinear
+             ? std::abs(state.motion.direction.norm() - 1)
+             : 0;
+}
+
+std::string stage_scale_line(const JointState& state) {
+  return "1 mm of the stage is " + number_text(std::round(1e4 * state.motion.direction.norm()) / 1e4) +
+         " mm by the board: either the size of the board is not the one that is named, or the stage's steps "
+         "per millimetre are off";
+}
+
+/// Names the pictures of a laser that show no stripe that counts.
+void tell_lost_stripes(const std::vector<CalibrationView>& views, const std::vector<std::size_t>& used,
+                       const std::set<std::size_t>& with_stripe, std::vector<std::string>& left_out) {
+  for (std::size_t k = 0; k < used.size(); ++k) {
+    const CalibrationView& view = views[used[k]];
+    if (!view.laser_picture.empty() && !with_stripe.contains(k)) {
+      left_out.push_back(view.laser_picture + ": no stripe on the board that lies in the laser's plane");
+    }
+  }
+}
+
 /// Refuses what is worse than the limits, with the reason.
 Status good_enough(const CalibrationOptions& options, const JointErrors& errors, const JointState& state) {
   const CameraModel& camera = state.camera;
@@ -113,6 +137,11 @@ Status good_enough(const CalibrationOptions& options, const JointErrors& errors,
         "the stripe is off the laser plane by " + rounded(errors.stripe_rms_px) + " px, more than " +
             rounded(options.most_stripe_px),
         "see that neither laser nor camera was moved between the pictures, and that the board is flat");
+  }
+  if (scale_off(state) > options.most_stage_scale) {
+    return refuse(stage_scale_line(state),
+                  "measure the squares of the board, and see to the stage's steps per millimetre and to the "
+                  "positions that its pictures are named with");
   }
   if (1e3 * errors.volume_sigma_mm > options.most_volume_sigma_um) {
     return refuse("points would be known to " + rounded(1e3 * errors.volume_sigma_mm) + " µm only",
@@ -189,10 +218,14 @@ Result<CalibrationReport> calibrate_rig(const std::vector<CalibrationView>& view
   quality.volume_sigma_um = 1e3 * errors->volume_sigma_mm;
   quality.axis_sigma_rad = errors->axis_sigma_rad;
   quality.left_out = intrinsics->left_out;
+  tell_lost_stripes(views, intrinsics->used, with_stripe, quality.left_out);
   intrinsics->camera = state.camera;
   intrinsics->camera_from_board = state.camera_from_board;
   report.missing = missing_poses(views, *intrinsics, options.board, state.has_laser ? &rig.laser : nullptr,
-                                 options.plate_margin_mm);
+                                 options.plate_margin_mm, options.depth_range_mm);
+  if (scale_off(state) > options.wanted_stage_scale) {
+    report.missing.insert(report.missing.begin(), stage_scale_line(state));
+  }
   if (options.motion == MotionKind::kGalvanometer) {
     quality.axis_sigma_rad = mirror_axis_doubt_rad(rig, errors->axis_sigma_rad);
     report.mirror =

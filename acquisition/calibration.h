@@ -24,6 +24,9 @@ struct CalibrationOptions {
   double most_stripe_px = 1.0;
   double most_focal_share = 0.005;  ///< standard deviation of the focal length over its value
   double most_volume_sigma_um = 50;
+  /// A slide's millimetre, measured by the board, less 1: from `wanted` on it is told, beyond `most` refused.
+  double wanted_stage_scale = 0.005;
+  double most_stage_scale = 0.05;
   double most_turntable_axis_rad = 0.0175;  ///< standard deviation of its direction: 1°
   double wanted_mirror_axis_rad =
       0.035;  ///< of a galvanometer: 2°; known less well, it asks for more pictures
@@ -44,9 +47,11 @@ struct CalibrationReport {
                                                       const CalibrationOptions& options);
 
 /// Which poses of the board are missing: parts of the picture where no corner was, sides that it was not
-/// tilted to, and (with stripes) depths and sides of the volume where the stripe was never seen on it.
+/// tilted to, and (with stripes) depths and sides of the volume where the stripe was never seen on it; also
+/// how much of `depth_range_mm` the picture does not hold.
 [[nodiscard]] std::vector<std::string> missing_poses(const std::vector<CalibrationView>& views,
                                                      const Intrinsics& intrinsics, const BoardSpec& board,
-                                                     const Plane* laser, double plate_margin_mm = 0);
+                                                     const Plane* laser, double plate_margin_mm = 0,
+                                                     double depth_range_mm = 0);
 
 }  // namespace dubsar

@@ -7,6 +7,7 @@
 
 #include "acquisition/calibration.h"
 #include "acquisition/calibration_laser.h"
+#include "acquisition/calibration_volume.h"
 #include "core/number_text.h"
 #include "core/units.h"
 
@@ -75,7 +76,7 @@ void ask_for_tilts(const Intrinsics& intrinsics, std::vector<std::string>& out) 
 }
 
 void ask_for_stripes(const std::vector<CalibrationView>& views, const Intrinsics& intrinsics,
-                     const BoardSpec& board, double margin_mm, const Plane& laser,
+                     const BoardSpec& board, double margin_mm, double depth_range_mm, const Plane& laser,
                      std::vector<std::string>& out) {
   // Where the laser's plane holds the camera's y more than its x, the stripe runs down the picture.
   const bool runs_down = std::abs(laser.normal.x()) > std::abs(laser.normal.y());
@@ -105,6 +106,14 @@ void ask_for_stripes(const std::vector<CalibrationView>& views, const Intrinsics
     out.push_back("show the laser on the board " + number_text(std::round(2 * wanted)) +
                   " mm farther from the camera");
   }
+  const SeenDepth seen = seen_depth(intrinsics.camera, laser, depth_range_mm);
+  const double held = std::floor(2 * std::min(seen.near_mm, seen.far_mm));
+  if (held < depth_range_mm - 1) {
+    out.push_back("the picture holds " + number_text(held) + " mm of the depth range of " +
+                  number_text(std::round(depth_range_mm)) +
+                  " mm, and nothing is said of the rest: name a smaller depth range, or a larger region of "
+                  "the camera");
+  }
   if (first > 0.25) {
     out.emplace_back(runs_down ? kLaserUpper : kLaserLeft);
   }
@@ -117,11 +126,11 @@ void ask_for_stripes(const std::vector<CalibrationView>& views, const Intrinsics
 
 std::vector<std::string> missing_poses(const std::vector<CalibrationView>& views,
                                        const Intrinsics& intrinsics, const BoardSpec& board,
-                                       const Plane* laser, double plate_margin_mm) {
+                                       const Plane* laser, double plate_margin_mm, double depth_range_mm) {
   std::vector<std::string> out;
   ask_for_tilts(intrinsics, out);
   if (laser != nullptr) {
-    ask_for_stripes(views, intrinsics, board, plate_margin_mm, *laser, out);
+    ask_for_stripes(views, intrinsics, board, plate_margin_mm, depth_range_mm, *laser, out);
   }
   ask_for_parts(views, intrinsics, out);
   if (intrinsics.used.size() < kEnoughViews) {

@@ -84,6 +84,7 @@ Result<CalibrationPictures> look_at_pictures(const fs::path& folder, const Calib
       view.fixed = stop.fixed;
       view.stage_position = stop.position;
     } else if (!set.poses[i].laser.empty()) {
+      view.laser_picture = set.poses[i].laser;
       view.mirror_position = set.poses[i].mirror_rad;
       Result<std::vector<Eigen::Vector2d>> stripe = stripe_in(folder, set, set.poses[i], view.board);
       if (!stripe) {

@@ -21,6 +21,23 @@ std::string rounded(double value) {
   return number_text(std::round(value * 100) / 100);
 }
 
+constexpr double kRepeatedPx = 0.02;  // a board that is shown again comes back to no such place
+
+/// Whether both are one picture: the same corners at the same places, mirror and stage where they were.
+bool repeats(const CalibrationView& a, const CalibrationView& b) {
+  if (a.board.corners_px.size() != b.board.corners_px.size() || a.fixed != b.fixed ||
+      a.stage_position != b.stage_position || a.mirror_position != b.mirror_position) {
+    return false;
+  }
+  for (std::size_t i = 0; i < a.board.corners_px.size(); ++i) {
+    if ((a.board.corners_mm[i] - b.board.corners_mm[i]).norm() > 1e-6 ||
+        (a.board.corners_px[i] - b.board.corners_px[i]).norm() > kRepeatedPx) {
+      return false;
+    }
+  }
+  return true;
+}
+
 struct Solved {
   CameraModel camera;
   std::vector<RigidTransform> poses;
@@ -126,16 +143,21 @@ Result<Intrinsics> find_intrinsics(const std::vector<CalibrationView>& views,
                            std::to_string(first.width) + " x " + std::to_string(first.height),
                        "take all pictures with the same region of the same camera");
     }
-    if (board.corners_px.size() >= 6) {
-      out.used.push_back(i);
-    } else {
+    const auto same = std::ranges::find_if(
+        out.used, [&](std::size_t earlier) { return repeats(views[earlier], views[i]); });
+    if (board.corners_px.size() < 6) {
       out.left_out.push_back(board.name + ": too few corners");
+    } else if (same != out.used.end()) {
+      out.left_out.push_back(board.name + ": the same picture as " + views[*same].board.name);
+    } else {
+      out.used.push_back(i);
     }
   }
   const auto too_few = [&]() {
     return bad_input({},
                      "the board was found in " + std::to_string(out.used.size()) + " pictures, " +
-                         std::to_string(least) + " are the least",
+                         std::to_string(least) + " are the least" +
+                         (out.left_out.empty() ? "" : " (left out: " + out.left_out.front() + ")"),
                      kMend);
   };
   if (out.used.size() < least) {

@@ -290,10 +290,10 @@ JointErrors Refinement::errors() const {
 
 double Refinement::volume_sigma_mm(const ceres::Covariance& covariance, double depth_range_mm,
                                    bool stage) const {
-  const bool linear = stage && state_.motion.kind == MotionKind::kLinear;
-  Eigen::VectorXd unknowns(15);
-  unknowns << Eigen::Map<const Eigen::Matrix<double, 9, 1>>(x_.camera.data()), x_.laser, x_.direction;
-  Eigen::MatrixXd joint = Eigen::MatrixXd::Zero(15, 15);
+  Eigen::VectorXd unknowns(18);
+  unknowns << Eigen::Map<const Eigen::Matrix<double, 9, 1>>(x_.camera.data()), x_.laser, x_.direction,
+      x_.point;
+  Eigen::MatrixXd joint = Eigen::MatrixXd::Zero(18, 18);
   const auto block = [&](const double* a, const double* b, Eigen::Index row, Eigen::Index col,
                          Eigen::Index rows, Eigen::Index cols) {
     Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> part(rows, cols);
@@ -304,12 +304,20 @@ double Refinement::volume_sigma_mm(const ceres::Covariance& covariance, double d
   block(x_.camera.data(), x_.camera.data(), 0, 0, 9, 9);
   block(x_.camera.data(), x_.laser.data(), 0, 9, 9, 3);
   block(x_.laser.data(), x_.laser.data(), 9, 9, 3, 3);
-  if (linear) {
+  const bool counts = stage && state_.motion.kind != MotionKind::kGalvanometer;
+  if (counts) {
     block(x_.camera.data(), x_.direction.data(), 0, 12, 9, 3);
     block(x_.laser.data(), x_.direction.data(), 9, 12, 3, 3);
     block(x_.direction.data(), x_.direction.data(), 12, 12, 3, 3);
   }
-  return dubsar::volume_sigma_mm(state_.camera, unknowns, joint, linear, depth_range_mm);
+  if (counts && state_.motion.kind == MotionKind::kTurntable) {
+    block(x_.camera.data(), x_.point.data(), 0, 15, 9, 3);
+    block(x_.laser.data(), x_.point.data(), 9, 15, 3, 3);
+    block(x_.direction.data(), x_.point.data(), 12, 15, 3, 3);
+    block(x_.point.data(), x_.point.data(), 15, 15, 3, 3);
+  }
+  return dubsar::volume_sigma_mm(state_.camera, unknowns, joint,
+                                 counts ? std::optional(state_.motion.kind) : std::nullopt, depth_range_mm);
 }
 
 bool Refinement::deviations(double depth_range_mm, JointErrors& errors) {
@@ -331,6 +339,12 @@ bool Refinement::deviations(double depth_range_mm, JointErrors& errors) {
   if (laser && stage) {
     blocks.emplace_back(x_.camera.data(), x_.direction.data());
     blocks.emplace_back(x_.laser.data(), x_.direction.data());
+    if (state_.motion.kind == MotionKind::kTurntable) {
+      blocks.emplace_back(x_.point.data(), x_.point.data());
+      blocks.emplace_back(x_.camera.data(), x_.point.data());
+      blocks.emplace_back(x_.laser.data(), x_.point.data());
+      blocks.emplace_back(x_.direction.data(), x_.point.data());
+    }
   }
   if (!covariance.Compute(blocks, problem_.get())) {
     return false;

@@ -29,7 +29,8 @@ struct JointErrors {
   double stage_rms_mm = 0;
   double focal_sigma_px = 0;
   /// Of a point in the measuring volume against the others: the largest, after the rigid motion of the whole
-  /// that no measurement can see has been taken out. Contains camera, laser plane and a linear stage.
+  /// that no measurement can see has been taken out. Contains camera, laser plane, and a slide or
+  /// a turntable over a part of its way (volume_sigma_mm).
   double volume_sigma_mm = 0;
   double axis_sigma_rad = 0;
 };

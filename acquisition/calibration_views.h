@@ -18,6 +18,7 @@ struct CalibrationView {
   /// The laser's stripe on this pose: image points along it, already without ambient light. May hold points
   /// beside the board; they are sorted out.
   std::vector<Eigen::Vector2d> stripe_px;
+  std::string laser_picture;   ///< file that `stripe_px` was looked for in; empty when there is none
   double mirror_position = 0;  ///< of a galvanometer when the stripe was taken, radians
   /// Views of one name show the board lying still on the stage while the stage went to `stage_position`.
   std::string fixed;
@@ -45,8 +46,10 @@ struct IntrinsicsOptions {
   double outlier_factor = 3;
 };
 
-/// Camera and poses from views of one board (Zhang 2000, through OpenCV). Errors (kBadInput): too few views,
-/// pictures of different sizes, poses that leave the focal length open, residuals beyond a pixel.
+/// Camera and poses from views of one board (Zhang 2000, through OpenCV). A view that repeats an earlier one
+/// (corners within 0.02 px, at the same position of mirror or stage) tells nothing and is left out. Errors
+/// (kBadInput): too few views, pictures of different sizes, poses that leave the focal length open, residuals
+/// beyond a pixel.
 [[nodiscard]] Result<Intrinsics> find_intrinsics(const std::vector<CalibrationView>& views,
                                                  const IntrinsicsOptions& options = {});
 

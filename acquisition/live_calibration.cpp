@@ -230,6 +230,7 @@ Result<LiveCalibration::Taken> LiveCalibration::pose_while_streaming(const JobCo
     }
   }
   view.board = std::move(*seen);
+  view.laser_picture = names.laser;
   view.stripe_px = stripe_on_board(plan_.set, lit->view(), dim->view());
   plan_.set.poses.push_back(names);
   if (Status kept = keep(); !kept) {
@@ -358,7 +359,7 @@ std::vector<std::string> LiveCalibration::next() const {
     out.emplace_back("show the laser on the board");
   }
   for (std::string& one : missing_poses(views_, *intrinsics, board_, laser ? &laser->plane : nullptr,
-                                        plan_.set.plate_margin_mm)) {
+                                        plan_.set.plate_margin_mm, plan_.set.depth_range_mm)) {
     out.push_back(std::move(one));
   }
   const bool carries = plan_.set.motion && *plan_.set.motion != MotionKind::kGalvanometer;

@@ -57,8 +57,9 @@ void print_report(const CalibrationReport& report, const std::vector<std::string
     std::printf("  one pixel is %.1f µm across, %.1f µm in depth\n", 1e3 * rig.field_per_px_mm(),
                 1e3 * rig.depth_per_px_mm());
     std::printf(
-        "  points are known to %.1f µm against each other over the volume (1 σ, from the covariance)\n",
-        q.volume_sigma_um);
+        "  points are known to %.1f µm against each other over the volume%s (1 σ, from the covariance)\n",
+        q.volume_sigma_um,
+        rig.has_motion && rig.motion.kind == MotionKind::kTurntable ? ", turned by 30° to either side" : "");
   }
   if (rig.has_motion) {
     std::printf("stage: %s, direction known to %.3f°", motion_word(rig.motion.kind),

@@ -262,7 +262,14 @@ TEST(Calibration, RefusesWithTheReason) {
   EXPECT_NE(reason({}, std::nullopt).find("0 pictures"), std::string::npos);
   EXPECT_NE(reason({all[0], all[1]}, std::nullopt).find("2 pictures"), std::string::npos);
   // The same pose again and again.
-  EXPECT_NE(reason({all[0], all[0], all[0], all[0], all[0]}, std::nullopt).find("tilt"), std::string::npos);
+  std::vector<CalibrationView> one_pose(5, all[0]);
+  for (std::size_t i = 0; i < one_pose.size(); ++i) {
+    one_pose[i].board.corners_px[0].x() += 0.1 * static_cast<double>(i);  // five pictures, not one
+  }
+  EXPECT_NE(reason(one_pose, std::nullopt).find("tilt"), std::string::npos);
+  // One picture, five times.
+  EXPECT_NE(reason({all[0], all[0], all[0], all[0], all[0]}, std::nullopt).find("the same picture as pose0"),
+            std::string::npos);
   // No board on the stage.
   EXPECT_NE(reason(all, MotionKind::kLinear).find("stage"), std::string::npos);
   // A picture of another camera.
@@ -277,6 +284,77 @@ TEST(Calibration, RefusesWithTheReason) {
     }
   }
   EXPECT_NE(reason(moved, std::nullopt).find("laser"), std::string::npos);
+}
+
+TEST(Calibration, APictureThatIsNamedTwiceCountsOnce) {
+  const std::vector<CalibrationView> once = held_views();
+  std::vector<CalibrationView> twice = once;
+  twice.insert(twice.end(), once.begin(), once.end());
+  const Result<CalibrationReport> alone = calibrate_rig(once, options_for(std::nullopt));
+  const Result<CalibrationReport> report = calibrate_rig(twice, options_for(std::nullopt));
+  ASSERT_TRUE(alone && report);
+  EXPECT_EQ(report->rig.quality.board_views, 12);
+  ASSERT_EQ(report->rig.quality.left_out.size(), 12U);
+  EXPECT_EQ(report->rig.quality.left_out[3], "pose3: the same picture as pose3");
+  EXPECT_EQ(report->rig.quality.focal_sigma_px, alone->rig.quality.focal_sigma_px);
+}
+
+TEST(Calibration, APictureOfTheLaserWithoutAStripeIsNamed) {
+  std::vector<CalibrationView> views = held_views();
+  for (CalibrationView& view : views) {
+    view.laser_picture = view.board.name + "_laser";
+  }
+  views[4].stripe_px.clear();
+  const Result<CalibrationReport> report = calibrate_rig(views, options_for(std::nullopt));
+  ASSERT_TRUE(report.has_value()) << report.error().line();
+  ASSERT_EQ(report->rig.quality.left_out.size(), 1U);
+  EXPECT_EQ(report->rig.quality.left_out[0].find("pose4_laser: no stripe on the board"), 0U);
+}
+
+/// Board and slide both say what a millimetre is.
+TEST(Calibration, TellsAndThenRefusesAStageWhoseMillimetreIsNotTheBoards) {
+  const RigCalibration truth = truth_of(MotionKind::kLinear);
+  const auto scaled = [&](double share) {
+    std::vector<CalibrationView> views = held_views(truth);
+    for (CalibrationView& view : stage_views(truth, {-6, -3, 0, 3, 6})) {
+      view.stage_position *= share;
+      views.push_back(std::move(view));
+    }
+    return calibrate_rig(views, options_for(MotionKind::kLinear));
+  };
+  const auto told = [](const Result<CalibrationReport>& report) {
+    return std::ranges::count_if(
+        report->missing, [](const std::string& line) { return line.starts_with("1 mm of the stage"); });
+  };
+  const Result<CalibrationReport> right = scaled(1.001);
+  ASSERT_TRUE(right.has_value()) << right.error().line();
+  EXPECT_EQ(told(right), 0);
+  for (const double share : {0.98, 1.02}) {
+    const Result<CalibrationReport> off = scaled(share);
+    ASSERT_TRUE(off.has_value()) << off.error().line();
+    EXPECT_EQ(told(off), 1);
+  }
+  for (const double share : {0.8, 1.1}) {
+    const Result<CalibrationReport> wrong = scaled(share);
+    ASSERT_FALSE(wrong.has_value()) << share;
+    EXPECT_NE(wrong.error().what.find("1 mm of the stage is "), std::string::npos);
+  }
+}
+
+TEST(Calibration, ALargerDepthRangeNeverClaimsToBeKnownBetter) {
+  const RigCalibration truth = truth_of(MotionKind::kLinear);
+  double before = 0;
+  for (const double depth : {20.0, 40.0, 80.0, 150.0, 400.0}) {
+    CalibrationOptions options = options_for(std::nullopt);
+    options.depth_range_mm = depth;
+    const Result<CalibrationReport> report = calibrate_rig(held_views(truth), options);
+    ASSERT_TRUE(report.has_value()) << report.error().line();
+    EXPECT_GE(report->rig.quality.volume_sigma_um, before) << depth;
+    before = report->rig.quality.volume_sigma_um;
+    const bool told = std::ranges::any_of(
+        report->missing, [](const std::string& line) { return line.starts_with("the picture holds "); });
+    EXPECT_EQ(told, depth > 100) << depth;
+  }
 }
 
 TEST(Calibration, RefusesAStageThatTheBoardDidNotFollow) {

@@ -65,6 +65,9 @@ void draw_report(UiContext& ui, const CalibrateOutcome& outcome) {
   for (const std::string& line : outcome.left_out) {
     say(ui.colours.faint, translated(line, ui.preferences.language));
   }
+  for (const std::string& line : q.left_out) {
+    say(ui.colours.faint, translated(line, ui.preferences.language));
+  }
   for (const std::string& line : outcome.report.missing) {
     say(ui.colours.amber,
         fmt::format("{}: {}", ui.text(Text::kNextPose), translated(line, ui.preferences.language)));

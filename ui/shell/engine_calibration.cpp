@@ -55,6 +55,21 @@ constexpr EnginePhrase kCalibration[] = {
     {"show the laser on the board ", "den Laser auf dem Muster zeigen, "},
     {" mm nearer to the camera", " mm näher an der Kamera"},
     {" mm farther from the camera", " mm weiter von der Kamera"},
+    {"the picture holds ", "das Bild fasst "},
+    {" mm of the depth range of ", " mm des Tiefenbereichs von "},
+    {" mm, and nothing is said of the rest: name a smaller depth range, or a larger region of the camera",
+     " mm, und über den Rest wird nichts gesagt: einen kleineren Tiefenbereich nennen, oder einen größeren "
+     "Ausschnitt der Kamera"},
+    {"1 mm of the stage is ", "1 mm des Tisches misst "},
+    {" mm by the board: either the size of the board is not the one that is named, or the stage's steps per "
+     "millimetre are off",
+     " mm nach dem Muster: entweder ist das Muster nicht so groß wie genannt, oder die Schritte des Tisches "
+     "je Millimeter stimmen nicht"},
+    {"measure the squares of the board, and see to the stage's steps per millimetre and to the positions "
+     "that its pictures are named with",
+     "die Felder des Musters nachmessen, und die Schritte des Tisches je Millimeter und die Stellungen "
+     "prüfen, "
+     "nach denen seine Bilder benannt sind"},
     {"take pictures with the laser on the board, bright but not saturated",
      "Bilder mit dem Laser auf dem Muster aufnehmen, hell, aber nicht übersteuert"},
     {"take pictures with the laser on the board", "Bilder mit dem Laser auf dem Muster aufnehmen"},
@@ -72,6 +87,10 @@ constexpr EnginePhrase kCalibration[] = {
     {"° are wanted)", "° sind nötig)"},
     {"° to ", "° bis "},
     {": too few corners", ": zu wenige Ecken"},
+    {": the same picture as ", ": dasselbe Bild wie "},
+    {" (left out: ", " (ausgelassen: "},
+    {": no stripe on the board that lies in the laser's plane",
+     ": kein Streifen auf dem Muster, der in der Ebene des Lasers liegt"},
     {": its corners are off by ", ": seine Ecken weichen ab um "},
     {" px, those of the others by ", " px, die der anderen um "},
     {"too few corners of the board were found, ", "zu wenige Ecken des Musters gefunden, "},
