@@ -9,75 +9,42 @@
 #include <numeric>
 #include <utility>
 
+#include "acquisition/ball_face.h"
 #include "acquisition/calibration_laser.h"
+#include "acquisition/plane_outline.h"
 #include "acquisition/sphere_fit.h"
 #include "core/number_text.h"
-#include "core/order_statistics.h"
 #include "core/random.h"
-#include "core/units.h"
 
 namespace dubsar {
 
 namespace {
 
-constexpr double kLeftOut = 0.003;  // of the samples, as the guideline allows
-constexpr double kSeenWithinRad = rad_from_deg(60);
-constexpr double kSeenOfPlane = 0.9;  // of its sides: the last samples at an edge are seldom good
+constexpr std::size_t kLeastParts = 18;  // three quarters of a ball's face
+constexpr double kSeenOfPlane = 0.9;     // of its sides: the last samples at an edge are seldom good
 constexpr int kTries = 6000;
 constexpr std::size_t kLeastOnBall = 100;
+constexpr double kBesidePlaneMm = 1.0;  // what lies less far off makes the outline
 
 struct Found {
   Sphere sphere;
   std::vector<Eigen::Vector3d> points_mm;
+  LeftOut left_out;
 };
 
 std::string micrometres(double mm) {
   return number_text(std::round(1e4 * mm) / 10) + " µm";
 }
 
-/// Largest less smallest value when the share of samples that lie farthest from the middle has been left out.
-double range_of(std::vector<double> values) {
-  const auto drop = static_cast<std::size_t>(kLeftOut * static_cast<double>(values.size()));
+/// Largest less smallest value when the share of samples that lie farthest from the middle has been left out,
+/// those among it that were left out before.
+double range_of(std::vector<double> values, std::size_t left_out) {
+  const auto may_be = static_cast<std::size_t>(kMayBeLeftOut * static_cast<double>(values.size() + left_out));
+  const std::size_t drop = may_be - std::min(may_be, left_out);
   std::sort(values.begin(), values.end(), [](double a, double b) { return std::abs(a) < std::abs(b); });
   values.resize(values.size() - drop);
   const auto [low, high] = std::minmax_element(values.begin(), values.end());
   return *high - *low;
-}
-
-/// Sides of the smallest rectangle in the plane that holds the points, less the few that stray; longer first.
-std::array<double, 2> extent_mm(const Plane& plane, const std::vector<Eigen::Vector3d>& points) {
-  constexpr std::size_t kMost = 20000;
-  constexpr int kTurns = 90;  // by a degree, which hides 0.02 % of a side
-  const Eigen::Vector3d across = plane.normal.unitOrthogonal();
-  const Eigen::Vector3d along = plane.normal.cross(across);
-  const std::size_t stride = std::max<std::size_t>(1, points.size() / kMost);
-  const auto width_mm = [&](const Eigen::Vector3d& direction) {
-    std::vector<double> at;
-    for (std::size_t i = 0; i < points.size(); i += stride) {
-      at.push_back(direction.dot(points[i]));
-    }
-    const auto stray = static_cast<std::size_t>(0.5 * kLeftOut * static_cast<double>(at.size()));
-    const double low = value_at_rank(at, stray);
-    return value_at_rank(at, at.size() - 1 - stray) - low;
-  };
-  std::array<double, kTurns> widths{};
-  std::array<double, 2> best{1e150, 1e150};
-  const auto turned = [&](int degrees) -> Eigen::Vector3d {
-    const double angle = rad_from_deg(degrees);
-    return std::cos(angle) * across + std::sin(angle) * along;
-  };
-  for (int turn = 0; turn < 2 * kTurns; ++turn) {
-    const double width = width_mm(turned(turn));
-    if (turn < kTurns) {
-      widths[static_cast<std::size_t>(turn)] = width;
-      continue;
-    }
-    const double other = widths[static_cast<std::size_t>(turn - kTurns)];
-    if (width * other < best[0] * best[1]) {
-      best = {std::max(width, other), std::min(width, other)};
-    }
-  }
-  return best;
 }
 
 std::string rounded_mm(double mm) {
@@ -89,19 +56,50 @@ std::vector<Eigen::Vector3d> on_ball(const std::vector<Eigen::Vector3d>& points,
                                      const Eigen::Vector3d& towards, double tolerance_mm) {
   std::vector<Eigen::Vector3d> out;
   for (const Eigen::Vector3d& p : points) {
-    const Eigen::Vector3d arm = p - sphere.center_mm;
-    if (std::abs(arm.norm() - sphere.radius_mm) <= tolerance_mm &&
-        arm.normalized().dot(towards) >= std::cos(kSeenWithinRad)) {
+    if (std::abs(sphere.signed_distance_mm(p)) <= tolerance_mm && before_face(p, sphere, towards)) {
       out.push_back(p);
     }
   }
   return out;
 }
 
+/// What is seen before a ball's face and is not on it. Farther out than half a radius it is another thing.
+LeftOut off_ball(const std::vector<Eigen::Vector3d>& points, const Sphere& sphere,
+                 const Eigen::Vector3d& towards, double tolerance_mm) {
+  LeftOut out;
+  for (const Eigen::Vector3d& p : points) {
+    const double d = sphere.signed_distance_mm(p);
+    if (std::abs(d) > tolerance_mm && d < 0.5 * sphere.radius_mm && before_face(p, sphere, towards)) {
+      out.add(std::abs(d));
+    }
+  }
+  return out;
+}
+
+/// The point stands over the plate where a ball or what joins two of them stands: no part of the plane is
+/// seen there.
+bool under_balls(const Eigen::Vector3d& point, const std::vector<Found>& balls,
+                 const Eigen::Vector3d& towards) {
+  constexpr double kFoot = 1.25;  // radii
+  const auto flat = [&](const Eigen::Vector3d& v) -> Eigen::Vector3d { return v - v.dot(towards) * towards; };
+  for (const Found& a : balls) {
+    for (const Found& b : balls) {
+      const Eigen::Vector3d way = flat(b.sphere.center_mm - a.sphere.center_mm);
+      const Eigen::Vector3d arm = flat(point - a.sphere.center_mm);
+      const double t = std::clamp(arm.dot(way) / std::max(1e-12, way.squaredNorm()), 0.0, 1.0);
+      if ((arm - t * way).norm() < kFoot * std::max(a.sphere.radius_mm, b.sphere.radius_mm)) {
+        return true;
+      }
+    }
+  }
+  return false;
+}
+
 /// The ball of this diameter with the most samples on it. `free` says of each cell of the grid whether its
 /// sample is still to be had.
 std::optional<Found> find_ball(const RangeGrid& grid, const std::vector<std::uint8_t>& free,
-                               double diameter_mm, const Eigen::Vector3d& towards, Random& random) {
+                               double diameter_mm, double form_limit_mm, const Eigen::Vector3d& towards,
+                               Random& random) {
   std::vector<std::size_t> cells;
   std::vector<Eigen::Vector3d> points;
   for (std::size_t i = 0; i < free.size(); ++i) {
@@ -115,6 +113,8 @@ std::optional<Found> find_ball(const RangeGrid& grid, const std::vector<std::uin
   }
   const double radius = 0.5 * diameter_mm;
   const double tolerance = 0.03 * radius;
+  // What the limit allows is on the ball.
+  const double in_the_end = std::clamp(form_limit_mm, tolerance, 0.1 * radius);
   const double spacing = grid.spacing_mm > 0 ? grid.spacing_mm : estimate_spacing_mm(grid);
   const auto reach = static_cast<std::uint64_t>(std::max(2.0, 0.7 * radius / std::max(1e-6, spacing)));
   Sphere best;
@@ -157,9 +157,9 @@ std::optional<Found> find_ball(const RangeGrid& grid, const std::vector<std::uin
   if (most * stride < kLeastOnBall) {
     return std::nullopt;
   }
-  Found out{best, {}};
+  Found out{best, {}, {}};
   for (int round = 0; round < 4; ++round) {
-    out.points_mm = on_ball(points, out.sphere, towards, round < 2 ? 2 * tolerance : tolerance);
+    out.points_mm = on_ball(points, out.sphere, towards, round < 2 ? 2 * tolerance : in_the_end);
     const auto fitted = fit_sphere(out.points_mm, out.sphere);
     if (!fitted) {
       return std::nullopt;
@@ -169,6 +169,7 @@ std::optional<Found> find_ball(const RangeGrid& grid, const std::vector<std::uin
   if (std::abs(out.sphere.radius_mm - radius) > 0.1 * radius || out.points_mm.size() < kLeastOnBall) {
     return std::nullopt;
   }
+  out.left_out = off_ball(points, out.sphere, towards, in_the_end);
   return out;
 }
 
@@ -196,14 +197,68 @@ std::vector<std::size_t> assigned(const std::vector<Found>& found, const Artefac
   return best;
 }
 
+void measure_plane(const std::vector<Eigen::Vector3d>& points, const std::vector<Found>& balls,
+                   const Artefact& artefact, const Eigen::Vector3d& towards, Verification& out) {
+  const Result<PlaneFit> fit = fit_plane(points);
+  if (!fit) {
+    out.failed.emplace_back("the plane was not found");
+    return;
+  }
+  // What lies far off is another thing; what lies a little off is the error that is asked for.
+  const double little = std::max({0.1, 10 * fit->rms_mm, artefact.flatness_limit_mm});
+  std::vector<double> distances;
+  std::vector<Eigen::Vector3d> on_plane;
+  std::vector<Eigen::Vector3d> beside;
+  for (const Eigen::Vector3d& p : points) {
+    const double d = fit->plane.signed_distance_mm(p);
+    if (std::abs(d) < little) {
+      distances.push_back(d);
+      on_plane.push_back(p);
+    }
+    if (std::abs(d) < std::max(little, kBesidePlaneMm)) {
+      beside.push_back(p);
+    }
+  }
+  if (distances.size() < kLeastOnBall) {
+    out.failed.emplace_back("the plane was not found");
+    return;
+  }
+  // Within the plane's outline it is the plane, however far off, but for what stands on it.
+  const double up = fit->plane.normal.dot(towards) > 0 ? 1 : -1;
+  const PlaneOutline outline(fit->plane, beside);
+  for (const Eigen::Vector3d& p : points) {
+    const double d = fit->plane.signed_distance_mm(p);
+    if (std::abs(d) >= little && outline.inside(p) && !(up * d > 0 && under_balls(p, balls, towards))) {
+      out.plane_left_out.add(std::abs(d));
+    }
+  }
+  out.plane_samples = distances.size();
+  out.plane_mm = PlaneOutline(fit->plane, on_plane).sides_mm();
+  out.flatness_mm = range_of(distances, out.plane_left_out.count);
+}
+
 void judge(const Artefact& artefact, Verification& out) {
   const auto over = [&](const std::string& what, double is, double limit) {
     if (std::abs(is) > limit) {
       out.failed.push_back(what + ": " + micrometres(is) + ", the limit " + micrometres(limit));
     }
   };
+  const auto off = [&](const std::string& part, const LeftOut& left, std::size_t samples,
+                       const std::string& where) {
+    if (left.too_many(samples)) {
+      out.failed.push_back("off " + part + ": " + std::to_string(left.count) + where +
+                           std::to_string(left.count + samples) + ", by up to " +
+                           micrometres(left.farthest_mm) + "; three in a thousand may be");
+    }
+  };
   for (const MeasuredBall& ball : out.balls) {
     const std::string number = std::to_string(ball.certified + 1);
+    if (ball.parts_seen < kLeastParts) {
+      out.failed.push_back("seen of ball " + number + ": " + std::to_string(ball.parts_seen) +
+                           " parts of its face, of " + std::to_string(kFaceParts) + ", and at least " +
+                           std::to_string(kLeastParts) + " have to be");
+    }
+    off("ball " + number, ball.left_out, ball.samples, " samples before its face, of ");
     over("probing error (form) of ball " + number, ball.form_mm, artefact.form_limit_mm);
     over("probing error (size) of ball " + number, ball.size_mm, artefact.size_limit_mm);
   }
@@ -219,6 +274,7 @@ void judge(const Artefact& artefact, Verification& out) {
                          rounded_mm(artefact.plane_mm[0]) + " x " + rounded_mm(artefact.plane_mm[1]) + " mm");
   }
   if (out.flatness_mm) {
+    off("the plane", out.plane_left_out, out.plane_samples, " samples within its outline, of ");
     over("flatness error", *out.flatness_mm, artefact.flatness_limit_mm);
   }
 }
@@ -226,9 +282,12 @@ void judge(const Artefact& artefact, Verification& out) {
 }  // namespace
 
 double Verification::worst_mm() const {
-  double worst = flatness_mm.value_or(0);
+  const auto off = [](const LeftOut& left, std::size_t samples) {
+    return left.too_many(samples) ? left.farthest_mm : 0.0;
+  };
+  double worst = std::max(flatness_mm.value_or(0), off(plane_left_out, plane_samples));
   for (const MeasuredBall& ball : balls) {
-    worst = std::max({worst, ball.form_mm, std::abs(ball.size_mm)});
+    worst = std::max({worst, ball.form_mm, std::abs(ball.size_mm), off(ball.left_out, ball.samples)});
   }
   for (const MeasuredSpacing& spacing : spacings) {
     worst = std::max(worst, std::abs(spacing.error_mm));
@@ -246,7 +305,8 @@ Result<Verification> verify_artefact(const RangeGrid& grid, const Artefact& arte
   Verification out;
   std::vector<Found> found;
   for (const Artefact::Ball& wanted : artefact.balls) {
-    std::optional<Found> ball = find_ball(grid, free, wanted.diameter_mm, towards, random);
+    std::optional<Found> ball =
+        find_ball(grid, free, wanted.diameter_mm, artefact.form_limit_mm, towards, random);
     if (!ball) {
       break;
     }
@@ -271,8 +331,9 @@ Result<Verification> verify_artefact(const RangeGrid& grid, const Artefact& arte
         distances.push_back(ball.sphere.signed_distance_mm(p));
       }
       const double diameter = 2 * ball.sphere.radius_mm;
-      out.balls.push_back({i, ball.sphere.center_mm, diameter, range_of(distances),
-                           diameter - artefact.balls[i].diameter_mm, ball.points_mm.size()});
+      out.balls.push_back({i, ball.sphere.center_mm, diameter, range_of(distances, ball.left_out.count),
+                           diameter - artefact.balls[i].diameter_mm, ball.points_mm.size(), ball.left_out,
+                           seen_parts(ball.points_mm, ball.sphere, towards)});
       for (std::size_t k = 0; k < i; ++k) {
         const double is = (ball.sphere.center_mm - found[order[k]].sphere.center_mm).norm();
         const double should = (artefact.balls[i].center_mm - artefact.balls[k].center_mm).norm();
@@ -287,24 +348,7 @@ Result<Verification> verify_artefact(const RangeGrid& grid, const Artefact& arte
         points.push_back(grid.point(i).cast<double>());
       }
     }
-    const Result<PlaneFit> fit = fit_plane(points);
-    std::vector<double> distances;
-    std::vector<Eigen::Vector3d> on_plane;
-    for (std::size_t i = 0; fit && i < points.size(); ++i) {
-      // What lies far off is another thing; what lies a little off is the error that is asked for.
-      const double d = fit->plane.signed_distance_mm(points[i]);
-      if (std::abs(d) < std::max(0.1, 10 * fit->rms_mm)) {
-        distances.push_back(d);
-        on_plane.push_back(points[i]);
-      }
-    }
-    if (distances.size() < kLeastOnBall) {
-      out.failed.emplace_back("the plane was not found");
-    } else {
-      out.plane_samples = distances.size();
-      out.plane_mm = extent_mm(fit->plane, on_plane);
-      out.flatness_mm = range_of(distances);
-    }
+    measure_plane(points, found, artefact, towards, out);
   }
   judge(artefact, out);
   return out;

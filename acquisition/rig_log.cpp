@@ -30,7 +30,7 @@ Result<RigLog> log_of_calibration(const std::filesystem::path& file) {
   if (!calibration) {
     return std::unexpected(calibration.error());
   }
-  return RigLog{file, verification_log_of(file), calibration->made_at};
+  return RigLog{file, verification_log_of(file), calibration->made_at, calibration->camera_serial, {}};
 }
 
 }  // namespace
@@ -58,9 +58,13 @@ Result<RigLog> rig_log_of(const std::filesystem::path& file) {
     return std::unexpected(rig.error());
   }
   if (!rig->calibration.empty()) {
-    return log_of_calibration(file.parent_path() / rig->calibration);
+    Result<RigLog> log = log_of_calibration(file.parent_path() / rig->calibration);
+    if (log) {
+      log->rig_name = rig->name;
+    }
+    return log;
   }
-  return RigLog{file, verification_log_of(file), range_camera_text(*rig)};
+  return RigLog{file, verification_log_of(file), range_camera_text(*rig), {}, rig->name};
 }
 
 }  // namespace dubsar

@@ -18,6 +18,8 @@ struct RigLog {
   /// What a line says as `calibration`: when the calibration was made; of a range camera which one it is and
   /// how the stage moves it.
   std::string as_it_stands;
+  std::string camera_serial;  ///< of the calibration; empty where nobody says
+  std::string rig_name;       ///< of the rig.toml; empty where a calibration was named
 
   [[nodiscard]] bool of_range_camera() const { return verified.extension() == ".toml"; }
   /// The latest line, if it is of the rig as it stands. A log that cannot be read says nothing.

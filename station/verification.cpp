@@ -3,6 +3,7 @@
 #include "station/verification.h"
 
 #include <ctime>
+#include <string_view>
 
 #include "acquisition/range_source.h"
 #include "acquisition/rig_log.h"
@@ -47,6 +48,42 @@ std::optional<std::time_t> time_of(const RangeGrid& grid) {
   return time >= kYear2000 && time <= std::time(nullptr) ? std::optional(time) : std::nullopt;
 }
 
+/// The serial number of the camera that scanned it, where the scan says one: a rig says "NAME, camera
+/// SERIAL", or its name alone.
+std::string camera_of(const RangeGrid& grid, const RigLog& log) {
+  constexpr std::string_view kMark = ", camera ";
+  const std::size_t at = grid.device.rfind(kMark);
+  if (at != std::string::npos) {
+    return grid.device.substr(at + kMark.size());
+  }
+  // One word alone may be the name of the rig, which a calibration does not know.
+  const bool is_camera =
+      log.rig_name.empty() ? grid.device == log.camera_serial : grid.device != log.rig_name;
+  return is_camera ? grid.device : std::string();
+}
+
+/// A scan that says that it is of another camera, or older than the calibration, proves nothing of it. A
+/// range camera has no calibration of ours.
+Status is_of(const RigLog& log, const ArtefactScan& scan, const std::string& uri) {
+  if (log.of_range_camera()) {
+    return {};
+  }
+  const std::string camera = camera_of(scan.grid, log);
+  if (!log.camera_serial.empty() && !camera.empty() && camera != log.camera_serial) {
+    return bad_input(uri,
+                     "the scan is of camera " + camera + ", the calibration of camera " + log.camera_serial,
+                     "scan the artefact with that camera, or name the calibration of this one");
+  }
+  const std::optional<std::time_t> when = time_of(scan.grid);
+  const bool comparable = days_since(log.as_it_stands).has_value();  // else a clock was wrong
+  if (scan.recorded && when && comparable && utc_text(*when) < log.as_it_stands) {
+    return bad_input(
+        uri, "the scan is of " + utc_text(*when) + ", the calibration was made later, on " + log.as_it_stands,
+        "scan the artefact again");
+  }
+  return {};
+}
+
 std::optional<RigLog> log_of_device(const std::string& uri) {
   const std::optional<std::filesystem::path> file = rig_file_of(uri);
   if (!file) {
@@ -65,7 +102,10 @@ nlohmann::ordered_json verification_figures(const Verification& is) {
                      {"diameter_mm", ball.diameter_mm},
                      {"form_um", 1e3 * ball.form_mm},
                      {"size_um", 1e3 * ball.size_mm},
-                     {"samples", ball.samples}});
+                     {"samples", ball.samples},
+                     {"left_out", ball.left_out.count},
+                     {"left_out_um", 1e3 * ball.left_out.farthest_mm},
+                     {"parts_seen", ball.parts_seen}});
   }
   nlohmann::ordered_json spacings = nlohmann::ordered_json::array();
   for (const MeasuredSpacing& one : is.spacings) {
@@ -75,6 +115,8 @@ nlohmann::ordered_json verification_figures(const Verification& is) {
   if (is.flatness_mm) {
     out["flatness_um"] = 1e3 * *is.flatness_mm;
     out["plane_samples"] = is.plane_samples;
+    out["plane_left_out"] = is.plane_left_out.count;
+    out["plane_left_out_um"] = 1e3 * is.plane_left_out.farthest_mm;
     out["plane_mm"] = {is.plane_mm[0], is.plane_mm[1]};
   }
   return out;
@@ -91,17 +133,25 @@ Result<VerifyOutcome> verify_rig(const VerifyRequest& request, JobContext& job) 
   }
   VerifyOutcome out;
   out.artefact = std::move(*artefact);
+  std::optional<RigLog> log;
   if (!request.calibration.empty()) {
-    const Result<RigLog> log = rig_log_of(request.calibration);
-    if (!log) {
-      return std::unexpected(log.error());
+    Result<RigLog> of = rig_log_of(request.calibration);
+    if (!of) {
+      return std::unexpected(of.error());
     }
+    log = std::move(*of);
     out.entry.calibration = log->as_it_stands;
     out.log = log->log.string();
   }
   const Result<ArtefactScan> scan = scan_of(request.scan, job);
   if (!scan) {
     return std::unexpected(scan.error());
+  }
+  if (log) {
+    if (Status said = is_of(*log, *scan, request.scan); !said) {
+      return std::unexpected(said.error());
+    }
+    out.camera_unknown = scan->recorded && !log->camera_serial.empty() && camera_of(scan->grid, *log).empty();
   }
   Result<Verification> is = verify_artefact(scan->grid, out.artefact);
   if (!is) {

@@ -25,12 +25,14 @@ struct VerifyOutcome {
   Artefact artefact;
   Verification is;
   VerificationEntry entry;
-  std::string log;            ///< that it was written into; empty: none
-  bool time_unknown = false;  ///< the file does not say when it was scanned: the entry has the time of now
+  std::string log;              ///< that it was written into; empty: none
+  bool time_unknown = false;    ///< the file does not say when it was scanned: the entry has the time of now
+  bool camera_unknown = false;  ///< the file does not say which camera scanned it, and the calibration does
 };
 
 /// Measures a certified artefact in one scan and judges it by its certificate. One that fails is an outcome,
-/// and is logged like one that passes. Errors: kUsage, kBadInput, kDevice, kStorage, kCancelled.
+/// and is logged like one that passes. A scan that says another camera than the calibration, or a time before
+/// it was made, is refused. Errors: kUsage, kBadInput, kDevice, kStorage, kCancelled.
 [[nodiscard]] Result<VerifyOutcome> verify_rig(const VerifyRequest& request, JobContext& job);
 
 /// The figures as the log and `--json` have them.

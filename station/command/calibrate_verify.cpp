@@ -12,18 +12,23 @@ namespace dubsar {
 
 namespace {
 
+std::string left_out(const LeftOut& left) {
+  return left.count == 0 ? std::string() : ", " + std::to_string(left.count) + " left out";
+}
+
 void print_figures(const Artefact& artefact, const Verification& is) {
   for (const MeasuredBall& ball : is.balls) {
-    std::printf("ball %zu: form %.1f µm, size %+.1f µm, diameter %.4f mm, %zu samples\n", ball.certified + 1,
-                1e3 * ball.form_mm, 1e3 * ball.size_mm, ball.diameter_mm, ball.samples);
+    std::printf("ball %zu: form %.1f µm, size %+.1f µm, diameter %.4f mm, %zu samples%s\n",
+                ball.certified + 1, 1e3 * ball.form_mm, 1e3 * ball.size_mm, ball.diameter_mm, ball.samples,
+                left_out(ball.left_out).c_str());
   }
   for (const MeasuredSpacing& one : is.spacings) {
     std::printf("balls %zu and %zu: sphere spacing error %+.1f µm\n", one.a + 1, one.b + 1,
                 1e3 * one.error_mm);
   }
   if (is.flatness_mm) {
-    std::printf("plane: flatness error %.1f µm over %.1f x %.1f mm, %zu samples\n", 1e3 * *is.flatness_mm,
-                is.plane_mm[0], is.plane_mm[1], is.plane_samples);
+    std::printf("plane: flatness error %.1f µm over %.1f x %.1f mm, %zu samples%s\n", 1e3 * *is.flatness_mm,
+                is.plane_mm[0], is.plane_mm[1], is.plane_samples, left_out(is.plane_left_out).c_str());
   }
   for (const std::string& line : is.failed) {
     std::printf("failed: %s\n", line.c_str());
@@ -59,7 +64,8 @@ Result<int> verify_rig(const VerifyOptions& options, const std::string& scan, Co
                                 {"error_mm", entry.error_mm},
                                 {"failed", entry.failed},
                                 {"measured", verification_figures(outcome->is)},
-                                {"time_unknown", outcome->time_unknown}};
+                                {"time_unknown", outcome->time_unknown},
+                                {"camera_unknown", outcome->camera_unknown}};
     if (!outcome->log.empty()) {
       json["log"] = outcome->log;
     }
@@ -69,6 +75,9 @@ Result<int> verify_rig(const VerifyOptions& options, const std::string& scan, Co
     print_figures(outcome->artefact, outcome->is);
     if (outcome->time_unknown) {
       std::printf("the file does not say when it was scanned: it counts as measured now\n");
+    }
+    if (outcome->camera_unknown) {
+      std::printf("the file does not say which camera scanned it\n");
     }
   }
   return outcome->is.passed() ? 0 : 1;

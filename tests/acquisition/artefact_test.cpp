@@ -6,6 +6,7 @@
 
 #include <Eigen/Geometry>
 #include <cmath>
+#include <utility>
 
 #include "acquisition/sphere_fit.h"
 #include "core/random.h"
@@ -110,6 +111,107 @@ TEST(Artefact, APlaneHasToBeSeenOverItsSize) {
   ASSERT_TRUE(part.has_value());
   ASSERT_EQ(part->failed.size(), 1U);
   EXPECT_NE(part->failed[0].find("mm only, and it has 80 x 60 mm"), std::string::npos) << part->failed[0];
+}
+
+/// Moves the samples for which `where` holds (x, y in mm) up by so much.
+template <typename Where>
+RangeGrid moved(RangeGrid grid, float up_mm, Where where) {
+  for (std::size_t i = 0; i < grid.size(); ++i) {
+    grid.z[i] += where(grid.x[i], grid.y[i]) ? up_mm : 0;
+  }
+  return grid;
+}
+
+TEST(Artefact, APartOfThePlaneThatIsFarOffFails) {
+  const RangeGrid good = scanned_bar(0.004, 0, 1);
+  const auto middle = [](float x, float y) { return std::abs(x) < 16 && y > -24 && y < -8; };
+  const auto side = [](float x, float y) { return x > 24 && y < 100; };
+  // A dent of half a millimetre, one of more than the outline is made of, and a step that reaches the edge.
+  for (const RangeGrid& grid :
+       {moved(good, -0.5F, middle), moved(good, 3.0F, middle), moved(good, 0.3F, side)}) {
+    const Result<Verification> is = verify_artefact(grid, bar());
+    ASSERT_TRUE(is.has_value());
+    ASSERT_EQ(is->failed.size(), 1U) << (is->failed.empty() ? "passed" : is->failed.back());
+    EXPECT_EQ(is->failed[0].find("off the plane: "), 0U) << is->failed[0];
+    EXPECT_GT(is->plane_left_out.count, 5000U);
+    EXPECT_EQ(is->worst_mm(), is->plane_left_out.farthest_mm);
+  }
+  const Result<Verification> is = verify_artefact(moved(good, -0.5F, middle), bar());
+  // 159 columns and 79 rows of 0.2 mm.
+  EXPECT_EQ(is->plane_left_out.count, 159U * 79U);
+  EXPECT_NEAR(is->plane_left_out.farthest_mm, 0.5, 0.03);
+  EXPECT_NE(is->failed[0].find("12561 samples within its outline, of "), std::string::npos) << is->failed[0];
+}
+
+TEST(Artefact, AFewSamplesOffThePlaneAreLeftOut) {
+  const auto speck = [](float x, float y) { return std::abs(x) < 1 && y > -15 && y < -13; };
+  const Result<Verification> is = verify_artefact(moved(scanned_bar(0.004, 0, 1), 0.5F, speck), bar());
+  ASSERT_TRUE(is.has_value());
+  EXPECT_TRUE(is->passed()) << is->failed.front();
+  EXPECT_GT(is->plane_left_out.count, 70U);
+  EXPECT_NEAR(*is->flatness_mm, 0.024, 0.006);
+}
+
+TEST(Artefact, WhatStandsOnThePlaneOrAroundItIsNotThePlane) {
+  // The bar between the balls, and the table that the plate lies on.
+  const auto rod = [](float x, float y) { return std::abs(x) < 9 && std::abs(y) < 2.5; };
+  const auto table = [](float x, float y) { return std::abs(x) > 28 || std::abs(y) > 22; };
+  const RangeGrid good = scanned_bar(0.004, 0, 1);
+  const Result<Verification> is = verify_artefact(moved(moved(good, 6.0F, rod), -10.0F, table), bar());
+  ASSERT_TRUE(is.has_value());
+  EXPECT_TRUE(is->passed()) << is->failed.front();
+  EXPECT_EQ(is->plane_left_out.count, 0U);
+}
+
+/// The first ball of the bar alone.
+Artefact ball() {
+  Artefact artefact = bar();
+  artefact.balls.resize(1);
+  artefact.has_plane = false;
+  return artefact;
+}
+
+/// Without the other ball, and without what is seen more than `cap_deg` from the first one's pole.
+RangeGrid scanned_ball(double cap_deg) {
+  RangeGrid grid = scanned_bar(0.004, 0, 1);
+  const double reach = 6 * std::sin(cap_deg * EIGEN_PI / 180);
+  for (std::size_t i = 0; i < grid.size(); ++i) {
+    grid.valid[i] = std::hypot(grid.x[i] + 15, grid.y[i] - 3) < reach ? 1 : 0;
+  }
+  return grid;
+}
+
+TEST(Artefact, OfABallMostOfItsFaceHasToBeSeen) {
+  const Result<Verification> whole = verify_artefact(scanned_ball(75), ball());
+  ASSERT_TRUE(whole.has_value());
+  EXPECT_TRUE(whole->passed()) << whole->failed.front();
+  EXPECT_EQ(whole->balls[0].parts_seen, 24U);
+  const Result<Verification> cap = verify_artefact(scanned_ball(20), ball());
+  ASSERT_TRUE(cap.has_value());
+  ASSERT_FALSE(cap->failed.empty());
+  EXPECT_EQ(cap->failed[0], "seen of ball 1: 8 parts of its face, of 24, and at least 18 have to be");
+  // One side in the dark, as behind what stands beside it: a strip of an eighth of the face passes, a half
+  // not.
+  for (const auto& [beyond_mm, passes] : {std::pair(4.0F, true), std::pair(0.0F, false)}) {
+    RangeGrid side = scanned_ball(75);
+    for (std::size_t i = 0; i < side.size(); ++i) {
+      side.valid[i] = side.x[i] + 15 > beyond_mm ? 0 : side.valid[i];
+    }
+    const Result<Verification> is = verify_artefact(side, ball());
+    ASSERT_TRUE(is.has_value());
+    EXPECT_EQ(is->passed(), passes) << beyond_mm;
+  }
+}
+
+TEST(Artefact, ALumpOnABallFails) {
+  // 0.4 mm over a quarter: more than three in a hundred of the radius.
+  const auto quarter = [](float x, float y) { return x > -14.5 && y > 3.5; };
+  const Result<Verification> is = verify_artefact(moved(scanned_ball(75), 0.4F, quarter), ball());
+  ASSERT_TRUE(is.has_value());
+  ASSERT_FALSE(is->passed());
+  EXPECT_EQ(is->failed[0].find("off ball 1: "), 0U) << is->failed[0];
+  EXPECT_GT(is->balls[0].left_out.farthest_mm, 0.2);
+  EXPECT_GE(is->worst_mm(), is->balls[0].left_out.farthest_mm);
 }
 
 TEST(Artefact, WhatIsNotThereIsSaid) {

@@ -217,11 +217,53 @@ TEST_F(VerifiedWhen, AFileWithoutATimeCountsFromNowAndThatIsSaid) {
   const Outcome outcome = verify("plate.ply");
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   EXPECT_EQ(outcome.json()["time_unknown"], true);
+  EXPECT_EQ(outcome.json()["camera_unknown"], true);
   // A time since the machine was started, or one that has not come, is none.
   for (const std::int64_t odd : {std::int64_t{40'000'000'000}, std::int64_t{9'000'000'000'000'000'000}}) {
     ASSERT_TRUE(write_grid_file(at("odd.grid"), plate(odd)));
     EXPECT_EQ(verify("odd.grid").json()["time_unknown"], true) << odd;
   }
+}
+
+TEST_F(VerifiedWhen, AScanThatIsOlderThanTheCalibrationProvesNothingOfIt) {
+  ASSERT_TRUE(write_grid_file(at("plate.grid"), plate(1'767'000'000'000'000'000)));
+  const Outcome outcome = verify("plate.grid");
+  EXPECT_EQ(outcome.status, 2);
+  EXPECT_THAT(outcome.err,
+              HasSubstr("the scan is of 2025-12-29T09:20:00Z, the calibration was made later, on "
+                        "2026-01-02T03:04:05Z"));
+  EXPECT_THAT(log(), SizeIs(0));
+}
+
+TEST_F(VerifiedWhen, AScanOfAnotherCameraProvesNothing) {
+  const auto of_device = [&](const std::string& device) {
+    RangeGrid grid = plate(1'767'400'000'000'000'000);
+    grid.device = device;
+    EXPECT_TRUE(write_grid_file(at("plate.grid"), grid));
+    return verify("plate.grid");
+  };
+  for (const char* other : {"OTHER-CAMERA", "bench, camera OTHER-CAMERA"}) {
+    const Outcome outcome = of_device(other);
+    EXPECT_EQ(outcome.status, 2) << other;
+    EXPECT_THAT(outcome.err,
+                HasSubstr("the scan is of camera OTHER-CAMERA, the calibration of camera SIM-CAMERA"));
+  }
+  EXPECT_THAT(log(), SizeIs(0));
+  for (const char* same : {"SIM-CAMERA", "bench, camera SIM-CAMERA"}) {
+    const Outcome outcome = of_device(same);
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    EXPECT_EQ(outcome.json()["camera_unknown"], false);
+  }
+  EXPECT_THAT(log(), SizeIs(2));
+  // A rig whose camera tells no number writes its own name.
+  ASSERT_TRUE(write_file_atomically(at("rig.toml"),
+                                    "name = \"bench\"\ncamera = \"eye:\"\nstage = \"none:\"\ncalibration = "
+                                    "\"calibration.json\"\n[scan]\nfrom_mm = 0\nto_mm = 1\nstep_mm = 0.1\n"));
+  EXPECT_EQ(of_device("bench").status, 2);
+  const Outcome named = run_command({"calibrate", at("plate.grid"), "--verify", at("plate.toml"),
+                                     "--calibration", at("rig.toml"), "--json"});
+  EXPECT_EQ(named.status, 0) << named.err;
+  EXPECT_EQ(named.json()["camera_unknown"], true);
 }
 
 }  // namespace

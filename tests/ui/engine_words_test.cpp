@@ -135,6 +135,28 @@ TEST(EngineWords, RefusalsOfCorrectionsAndArtefactsAreGerman) {
             "einer der Teile lässt sich nicht als Keil messen, Nummer 2: zu wenige Flächen des Netzes");
   EXPECT_EQ(translated("not all balls were found: 3, and the artefact has 5", Language::kGerman),
             "nicht alle Kugeln wurden gefunden: 3, und der Prüfkörper hat 5");
+  EXPECT_EQ(
+      translated("off the plane: 60000 samples within its outline, of 241001, by up to 517.9 µm; three in a "
+                 "thousand may be",
+                 Language::kGerman),
+      "nicht auf der Ebene: 60000 Messpunkte in ihrem Umriss, von 241001, um bis zu 517.9 µm; drei von "
+      "tausend dürfen es sein");
+  EXPECT_EQ(
+      translated("off ball 1: 1600 samples before its face, of 7000, by up to 400 µm; three in a thousand "
+                 "may be",
+                 Language::kGerman),
+      "nicht auf Kugel 1: 1600 Messpunkte vor ihrer Stirnseite, von 7000, um bis zu 400 µm; drei von "
+      "tausend dürfen es sein");
+  EXPECT_EQ(
+      translated("seen of ball 1: 8 parts of its face, of 24, and at least 18 have to be", Language::kGerman),
+      "gesehen von Kugel 1: 8 Felder ihrer Stirnseite, von 24, und mindestens 18 müssen es sein");
+  EXPECT_EQ(translated("the scan is of camera A7, the calibration of camera B8", Language::kGerman),
+            "der Scan ist von Kamera A7, die Kalibrierung von Kamera B8");
+  EXPECT_EQ(translated("the scan is of 2025-12-29T09:20:00Z, the calibration was made later, on "
+                       "2026-01-02T03:04:05Z",
+                       Language::kGerman),
+            "der Scan ist von 2025-12-29T09:20:00Z, die Kalibrierung ist später entstanden, am "
+            "2026-01-02T03:04:05Z");
   EXPECT_EQ(translated("show the laser on the board 12 mm nearer to the camera", Language::kGerman),
             "den Laser auf dem Muster zeigen, 12 mm näher an der Kamera");
 }

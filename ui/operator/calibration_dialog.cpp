@@ -46,6 +46,9 @@ void draw_outcome(UiContext& ui, const VerifyOutcome& outcome) {
   if (outcome.time_unknown) {
     say(ui.colours.amber, ui.text(Text::kVerifyTimeUnknown));
   }
+  if (outcome.camera_unknown) {
+    say(ui.colours.amber, ui.text(Text::kVerifyCameraUnknown));
+  }
   if (!outcome.log.empty()) {
     say(ui.colours.faint, outcome.log);
   }

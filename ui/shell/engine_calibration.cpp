@@ -19,6 +19,16 @@ constexpr EnginePhrase kCalibration[] = {
     {"probing error (size) of ball ", "Antastabweichung (Größe) der Kugel "},
     {"sphere spacing error of balls ", "Abstandsabweichung der Kugeln "},
     {"flatness error", "Ebenheitsabweichung"},
+    {"off ball ", "nicht auf Kugel "},
+    {"off the plane", "nicht auf der Ebene"},
+    {" samples before its face, of ", " Messpunkte vor ihrer Stirnseite, von "},
+    {" samples within its outline, of ", " Messpunkte in ihrem Umriss, von "},
+    {", by up to ", ", um bis zu "},
+    {"; three in a thousand may be", "; drei von tausend dürfen es sein"},
+    {"seen of ball ", "gesehen von Kugel "},
+    {" parts of its face, of ", " Felder ihrer Stirnseite, von "},
+    {", and at least ", ", und mindestens "},
+    {" have to be", " müssen es sein"},
     {", the limit ", ", die Grenze "},
     // what a calibration lacks
     {"tilt the board by 25 to 40° so that its right side in the picture comes nearer",
@@ -225,6 +235,12 @@ constexpr EnginePhrase kCalibration[] = {
      "zuerst das Muster aufnehmen, und es liegen lassen"},
     {"there is no scan in it", "es ist kein Scan darin"},
     {"scan the artefact first", "zuerst den Prüfkörper scannen"},
+    {"the scan is of camera ", "der Scan ist von Kamera "},
+    {", the calibration of camera ", ", die Kalibrierung von Kamera "},
+    {"scan the artefact with that camera, or name the calibration of this one",
+     "den Prüfkörper mit jener Kamera scannen, oder die Kalibrierung von dieser nennen"},
+    {", the calibration was made later, on ", ", die Kalibrierung ist später entstanden, am "},
+    {"the scan is of ", "der Scan ist von "},
 };
 
 }  // namespace

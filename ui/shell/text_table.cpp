@@ -234,6 +234,8 @@ constexpr TextRow kRows[] = {
     {Text::kVerifyPassed, "passed", "bestanden"},
     {Text::kVerifyTimeUnknown, "the file does not say when it was scanned: it counts as measured now",
      "die Datei sagt nicht, wann gescannt wurde: es gilt als jetzt gemessen"},
+    {Text::kVerifyCameraUnknown, "the file does not say which camera scanned it",
+     "die Datei sagt nicht, welche Kamera gescannt hat"},
     {Text::kVerifyFailed, "FAILED", "DURCHGEFALLEN"},
     {Text::kCalibrateHow,
      "For each pose of the board, which stays where it is: one picture of it lit, one with the laser on, one "

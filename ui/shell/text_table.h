@@ -183,6 +183,7 @@ enum class Text {
   kFlatnessLine,
   kVerifyPassed,
   kVerifyTimeUnknown,
+  kVerifyCameraUnknown,
   kVerifyFailed,
   kCalibrateHow,
   kPictureFolder,
