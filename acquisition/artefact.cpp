@@ -243,10 +243,10 @@ void judge(const Artefact& artefact, Verification& out) {
       out.failed.push_back(what + ": " + micrometres(is) + ", the limit " + micrometres(limit));
     }
   };
-  const auto off = [&](const std::string& part, const LeftOut& left, std::size_t samples,
+  const auto off = [&](const std::string& what, const LeftOut& left, std::size_t samples,
                        const std::string& where) {
     if (left.too_many(samples)) {
-      out.failed.push_back("off " + part + ": " + std::to_string(left.count) + where +
+      out.failed.push_back(what + ": " + std::to_string(left.count) + where +
                            std::to_string(left.count + samples) + ", by up to " +
                            micrometres(left.farthest_mm) + "; three in a thousand may be");
     }
@@ -258,7 +258,7 @@ void judge(const Artefact& artefact, Verification& out) {
                            " parts of its face, of " + std::to_string(kFaceParts) + ", and at least " +
                            std::to_string(kLeastParts) + " have to be");
     }
-    off("ball " + number, ball.left_out, ball.samples, " samples before its face, of ");
+    off("off ball " + number, ball.left_out, ball.samples, " samples before its face, of ");
     over("probing error (form) of ball " + number, ball.form_mm, artefact.form_limit_mm);
     over("probing error (size) of ball " + number, ball.size_mm, artefact.size_limit_mm);
   }
@@ -274,7 +274,7 @@ void judge(const Artefact& artefact, Verification& out) {
                          rounded_mm(artefact.plane_mm[0]) + " x " + rounded_mm(artefact.plane_mm[1]) + " mm");
   }
   if (out.flatness_mm) {
-    off("the plane", out.plane_left_out, out.plane_samples, " samples within its outline, of ");
+    off("off the plane", out.plane_left_out, out.plane_samples, " samples within its outline, of ");
     over("flatness error", *out.flatness_mm, artefact.flatness_limit_mm);
   }
 }

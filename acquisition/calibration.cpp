@@ -143,15 +143,15 @@ Status good_enough(const CalibrationOptions& options, const JointErrors& errors,
                   "measure the squares of the board, and see to the stage's steps per millimetre and to the "
                   "positions that its pictures are named with");
   }
-  if (1e3 * errors.volume_sigma_mm > options.most_volume_sigma_um) {
-    return refuse("points would be known to " + rounded(1e3 * errors.volume_sigma_mm) + " µm only",
-                  "show the stripe on the board near and far, left and right");
-  }
   if (state.has_stage && state.motion.kind == MotionKind::kTurntable &&
       errors.axis_sigma_rad > options.most_turntable_axis_rad) {
     return refuse(
         "the turntable's axis is known to " + rounded(deg_from_rad(errors.axis_sigma_rad)) + "° only",
         "turn the board on the turntable as far to either side as the camera still sees it");
+  }
+  if (1e3 * errors.volume_sigma_mm > options.most_volume_sigma_um) {
+    return refuse("points would be known to " + rounded(1e3 * errors.volume_sigma_mm) + " µm only",
+                  "show the stripe on the board near and far, left and right");
   }
   return {};
 }

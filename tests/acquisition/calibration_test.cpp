@@ -307,8 +307,13 @@ TEST(Calibration, APictureOfTheLaserWithoutAStripeIsNamed) {
   views[4].stripe_px.clear();
   const Result<CalibrationReport> report = calibrate_rig(views, options_for(std::nullopt));
   ASSERT_TRUE(report.has_value()) << report.error().line();
-  ASSERT_EQ(report->rig.quality.left_out.size(), 1U);
-  EXPECT_EQ(report->rig.quality.left_out[0].find("pose4_laser: no stripe on the board"), 0U);
+  const auto is_named = [&](const std::string& picture) {
+    return std::ranges::any_of(report->rig.quality.left_out, [&](const std::string& line) {
+      return line.starts_with(picture + ": no stripe on the board");
+    });
+  };
+  EXPECT_TRUE(is_named("pose4_laser"));
+  EXPECT_FALSE(is_named("pose3_laser"));
 }
 
 /// Board and slide both say what a millimetre is.
@@ -349,11 +354,11 @@ TEST(Calibration, ALargerDepthRangeNeverClaimsToBeKnownBetter) {
     options.depth_range_mm = depth;
     const Result<CalibrationReport> report = calibrate_rig(held_views(truth), options);
     ASSERT_TRUE(report.has_value()) << report.error().line();
-    EXPECT_GE(report->rig.quality.volume_sigma_um, before) << depth;
+    EXPECT_GE(report->rig.quality.volume_sigma_um, (1 - 1e-6) * before) << depth;
     before = report->rig.quality.volume_sigma_um;
     const bool told = std::ranges::any_of(
         report->missing, [](const std::string& line) { return line.starts_with("the picture holds "); });
-    EXPECT_EQ(told, depth > 100) << depth;
+    EXPECT_EQ(told, depth > 60) << depth;
   }
 }
 

@@ -139,7 +139,7 @@ TEST(EngineWords, RefusalsOfCorrectionsAndArtefactsAreGerman) {
       translated("off the plane: 60000 samples within its outline, of 241001, by up to 517.9 µm; three in a "
                  "thousand may be",
                  Language::kGerman),
-      "nicht auf der Ebene: 60000 Messpunkte in ihrem Umriss, von 241001, um bis zu 517.9 µm; drei von "
+      "nicht auf der Ebene: 60000 Messpunkte in ihrem Umriss, von 241001, um bis zu 517,9 µm; drei von "
       "tausend dürfen es sein");
   EXPECT_EQ(
       translated("off ball 1: 1600 samples before its face, of 7000, by up to 400 µm; three in a thousand "
