@@ -26,10 +26,11 @@ void warn_of_places(const Stitcher& stitcher, const std::map<int, std::string>& 
   }
   for (const Stitcher::Overlap& overlap : overlaps) {
     if (overlap.is_off()) {
-      log_warning(
-          fmt::format("scans {} and {} lie {:.2f} mm apart where they overlap, more than noise explains; the "
-                      "mesh is less reliable there; register them again",
-                      overlap.id, overlap.other_id, overlap.step_mm));
+      log_warning(fmt::format(
+          "scans {} and {} lie {:.2f} mm apart where they overlap, more than noise explains; the "
+          "mesh is less reliable, and may have a scan where the others fit it, not where its pose "
+          "puts it; register them again",
+          overlap.id, overlap.other_id, overlap.step_mm));
     }
   }
 }
