@@ -94,7 +94,7 @@ void warn_of_lost(const Analysis& analysis, const std::string& where) {
   }
 }
 
-void warn_of_coarse(const Analysis& analysis, const std::string& where) {
+std::optional<Error> too_coarse(const Analysis& analysis, const std::string& where) {
   const double spacing_mm = mean_spacing_mm(analysis.findings.area_mm2);
   std::vector<double> depths;
   for (const Wedge& wedge : analysis.set.wedges) {
@@ -103,14 +103,13 @@ void warn_of_coarse(const Analysis& analysis, const std::string& where) {
   const bool large =
       depths.size() >= kFewestLarge && median_of(std::move(depths)) > kSpacingsToADepth * spacing_mm;
   if (spacing_mm <= kCoarseMm || large) {
-    return;
+    return std::nullopt;
   }
-  log_warning(Error{ErrorKind::kBadInput,
-                    fmt::format("too coarse for wedges of the usual size, many or all of them are missed: "
-                                "its spacing is {:.2f} mm",
-                                spacing_mm),
-                    where, "scan it, or export it, at 0.1 mm or finer"}
-                  .line());
+  return Error{ErrorKind::kBadInput,
+               fmt::format("too coarse for wedges of the usual size, many or all of them are missed: "
+                           "its spacing is {:.2f} mm",
+                           spacing_mm),
+               where, "scan it, or export it, at 0.1 mm or finer"};
 }
 
 WedgeFile wedge_file(std::string mesh_name, const AnalysisOptions& options, const Analysis& analysis) {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -46,9 +47,9 @@ void warn_of_bodies(const Analysis& analysis, const std::string& where);
 /// A line of the log for each correction that could not be made.
 void warn_of_lost(const Analysis& analysis, const std::string& where);
 
-/// A line of the log where the mesh is too coarse for wedges of the usual size, and those that were found, if
-/// any, are no larger ones.
-void warn_of_coarse(const Analysis& analysis, const std::string& where);
+/// What there is to say where the mesh is too coarse for wedges of the usual size, and those that were found,
+/// if any, are not larger ones.
+[[nodiscard]] std::optional<Error> too_coarse(const Analysis& analysis, const std::string& where);
 
 /// wedges.json of it; the wedges themselves are taken out of `analysis`.
 [[nodiscard]] WedgeFile wedge_file(std::string mesh_name, const AnalysisOptions& options,

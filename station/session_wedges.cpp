@@ -68,7 +68,10 @@ Result<std::optional<WedgeFile>> measure_wedges(const Mesh& mesh,
     return std::nullopt;
   }
   warn_of_lost(*analysis, kCorrections);
-  warn_of_coarse(*analysis, "mesh/model.ply");
+  // Who scans so coarsely has chosen to: no warning at every end of a run.
+  if (const std::optional<Error> coarse = too_coarse(*analysis, "mesh/model.ply")) {
+    log_info(coarse->line());
+  }
   return wedge_file("../mesh/model.ply", options, *analysis);
 }
 

@@ -257,7 +257,9 @@ Result<int> analyze(const AnalyzeArguments& arguments, CommandContext& context) 
   warn_of_bodies(*analysis, arguments.in);
   warn_of_others(arguments, *said, corrections_file);
   warn_of_lost(*analysis, corrections_file.string());
-  warn_of_coarse(*analysis, arguments.in);
+  if (const std::optional<Error> coarse = too_coarse(*analysis, arguments.in)) {
+    log_warning(coarse->line());
+  }
   analysis->timings_s.insert(analysis->timings_s.begin(), StageTiming{"reading", reading_s});
   const double took_s = seconds_since(start);
   analysis->timings_s.push_back({"all", took_s});
