@@ -36,15 +36,7 @@ using ::testing::SizeIs;
 class ExportByHand : public ExportOfACopy {
  protected:
   [[nodiscard]] Outcome pack(const std::vector<std::string>& more = {}) const {
-    std::vector<std::string> words{"export",
-                                   session_.string(),
-                                   "--to",
-                                   bag().string(),
-                                   "--json",
-                                   "--without",
-                                   "renderings,features,grid-ply"};
-    words.insert(words.end(), more.begin(), more.end());
-    return run_command(words);
+    return pack_without("renderings,features,grid-ply", more);
   }
   [[nodiscard]] std::string info() const { return bytes_of(bag() / "bag-info.txt"); }
   [[nodiscard]] nlohmann::json provenance(const std::string& id) const {

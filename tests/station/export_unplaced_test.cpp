@@ -28,15 +28,7 @@ using ::testing::Not;
 class ExportOfUnplaced : public ExportOfACopy {
  protected:
   [[nodiscard]] Outcome pack(const std::vector<std::string>& more = {}) const {
-    std::vector<std::string> words{"export",
-                                   session_.string(),
-                                   "--to",
-                                   bag().string(),
-                                   "--json",
-                                   "--without",
-                                   "renderings,features,grid-ply,wedges"};
-    words.insert(words.end(), more.begin(), more.end());
-    return run_command(words);
+    return pack_without("renderings,features,grid-ply,wedges", more);
   }
   /// That all that the package says of scan `id` is that it has no place.
   void expect_told(const Outcome& done, int id) const {

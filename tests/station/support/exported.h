@@ -71,6 +71,13 @@ class ExportOfACopy : public Export {
     std::filesystem::copy(at("session"), session_, std::filesystem::copy_options::recursive);
   }
   [[nodiscard]] std::filesystem::path bag() const { return session_.string() + ".bag"; }
+  [[nodiscard]] test::Outcome pack_without(const std::string& parts,
+                                           const std::vector<std::string>& more) const {
+    std::vector<std::string> words{"export", session_.string(), "--to", bag().string(),
+                                   "--json", "--without",       parts};
+    words.insert(words.end(), more.begin(), more.end());
+    return test::run_command(words);
+  }
   [[nodiscard]] std::string packed(const std::string& file) const {
     return test::bytes_of(bag() / "data" / file);
   }

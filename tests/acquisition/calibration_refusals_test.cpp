@@ -1,0 +1,209 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+// What calibration refuses, leaves out and asks for, of views as a good detector would hand them over.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "acquisition/calibration.h"
+#include "tests/acquisition/support/ideal_views.h"
+
+namespace dubsar {
+namespace {
+
+using test::board;
+using test::held_views;
+using test::ideal_view;
+using test::numbered;
+using test::options_for;
+using test::stage_views;
+using test::truth_of;
+
+TEST(Calibration, RefusesWithTheReason) {
+  const auto reason = [](std::vector<CalibrationView> views, std::optional<MotionKind> motion) {
+    const Result<CalibrationReport> report = calibrate_rig(views, options_for(motion));
+    EXPECT_FALSE(report.has_value());
+    return report ? std::string() : report.error().line();
+  };
+  const std::vector<CalibrationView> all = held_views();
+  EXPECT_NE(reason({}, std::nullopt).find("0 pictures"), std::string::npos);
+  EXPECT_NE(reason({all[0], all[1]}, std::nullopt).find("2 pictures"), std::string::npos);
+  // The same pose again and again.
+  std::vector<CalibrationView> one_pose(5, all[0]);
+  for (std::size_t i = 0; i < one_pose.size(); ++i) {
+    one_pose[i].board.corners_px[0].x() += 0.1 * static_cast<double>(i);  // five pictures, not one
+  }
+  EXPECT_NE(reason(one_pose, std::nullopt).find("tilt"), std::string::npos);
+  // One picture, five times.
+  EXPECT_NE(reason({all[0], all[0], all[0], all[0], all[0]}, std::nullopt).find("the same picture as pose0"),
+            std::string::npos);
+  // No board on the stage.
+  EXPECT_NE(reason(all, MotionKind::kLinear).find("stage"), std::string::npos);
+  // A picture of another camera.
+  std::vector<CalibrationView> mixed = all;
+  mixed[1].board.width = 640;
+  EXPECT_NE(reason(mixed, std::nullopt).find("pixels"), std::string::npos);
+  // The laser was moved half way.
+  std::vector<CalibrationView> moved = all;
+  for (std::size_t i = 0; i < moved.size() / 2; ++i) {
+    for (Eigen::Vector2d& p : moved[i].stripe_px) {
+      p.y() += 25;
+    }
+  }
+  EXPECT_NE(reason(moved, std::nullopt).find("laser"), std::string::npos);
+}
+
+TEST(Calibration, APictureThatIsNamedTwiceCountsOnce) {
+  const std::vector<CalibrationView> once = held_views();
+  std::vector<CalibrationView> twice = once;
+  twice.insert(twice.end(), once.begin(), once.end());
+  const Result<CalibrationReport> alone = calibrate_rig(once, options_for(std::nullopt));
+  const Result<CalibrationReport> report = calibrate_rig(twice, options_for(std::nullopt));
+  ASSERT_TRUE(alone && report);
+  EXPECT_EQ(report->rig.quality.board_views, 12);
+  ASSERT_EQ(report->rig.quality.left_out.size(), 12U);
+  EXPECT_EQ(report->rig.quality.left_out[3], "pose3: the same picture as pose3");
+  EXPECT_EQ(report->rig.quality.focal_sigma_px, alone->rig.quality.focal_sigma_px);
+}
+
+TEST(Calibration, APictureOfTheLaserWithoutAStripeIsNamed) {
+  std::vector<CalibrationView> views = held_views();
+  for (CalibrationView& view : views) {
+    view.laser_picture = view.board.name + "_laser";
+  }
+  views[4].stripe_px.clear();
+  const Result<CalibrationReport> report = calibrate_rig(views, options_for(std::nullopt));
+  ASSERT_TRUE(report.has_value()) << report.error().line();
+  const auto is_named = [&](const std::string& picture) {
+    return std::ranges::any_of(report->rig.quality.left_out, [&](const std::string& line) {
+      return line.starts_with(picture + ": no stripe on the board");
+    });
+  };
+  EXPECT_TRUE(is_named("pose4_laser"));
+  EXPECT_FALSE(is_named("pose3_laser"));
+}
+
+/// Board and slide both say what a millimetre is.
+TEST(Calibration, TellsAndThenRefusesAStageWhoseMillimetreIsNotTheBoards) {
+  const RigCalibration truth = truth_of(MotionKind::kLinear);
+  const auto scaled = [&](double share) {
+    std::vector<CalibrationView> views = held_views(truth);
+    for (CalibrationView& view : stage_views(truth, {-6, -3, 0, 3, 6})) {
+      view.stage_position *= share;
+      views.push_back(std::move(view));
+    }
+    return calibrate_rig(views, options_for(MotionKind::kLinear));
+  };
+  const auto told = [](const Result<CalibrationReport>& report) {
+    return std::ranges::count_if(
+        report->missing, [](const std::string& line) { return line.starts_with("1 mm of the stage"); });
+  };
+  const Result<CalibrationReport> right = scaled(1.001);
+  ASSERT_TRUE(right.has_value()) << right.error().line();
+  EXPECT_EQ(told(right), 0);
+  for (const double share : {0.98, 1.02}) {
+    const Result<CalibrationReport> off = scaled(share);
+    ASSERT_TRUE(off.has_value()) << off.error().line();
+    EXPECT_EQ(told(off), 1);
+  }
+  for (const double share : {0.8, 1.1}) {
+    const Result<CalibrationReport> wrong = scaled(share);
+    ASSERT_FALSE(wrong.has_value()) << share;
+    EXPECT_NE(wrong.error().what.find("1 mm of the stage is "), std::string::npos);
+  }
+}
+
+TEST(Calibration, ALargerDepthRangeNeverClaimsToBeKnownBetter) {
+  const RigCalibration truth = truth_of(MotionKind::kLinear);
+  double before = 0;
+  for (const double depth : {20.0, 40.0, 80.0, 150.0, 400.0}) {
+    CalibrationOptions options = options_for(std::nullopt);
+    options.depth_range_mm = depth;
+    const Result<CalibrationReport> report = calibrate_rig(held_views(truth), options);
+    ASSERT_TRUE(report.has_value()) << report.error().line();
+    EXPECT_GE(report->rig.quality.volume_sigma_um, (1 - 1e-6) * before) << depth;
+    before = report->rig.quality.volume_sigma_um;
+    const bool told = std::ranges::any_of(
+        report->missing, [](const std::string& line) { return line.starts_with("the picture holds "); });
+    EXPECT_EQ(told, depth > 60) << depth;
+  }
+}
+
+TEST(Calibration, RefusesAStageThatTheBoardDidNotFollow) {
+  const RigCalibration truth = truth_of(MotionKind::kTurntable);
+  CalibrationOptions options = options_for(MotionKind::kTurntable);
+  const auto refused = [&](const std::vector<CalibrationView>& on_stage) {
+    std::vector<CalibrationView> views = held_views(truth);
+    views.insert(views.end(), on_stage.begin(), on_stage.end());
+    const Result<CalibrationReport> report = calibrate_rig(views, options);
+    return report ? std::string() : report.error().line();
+  };
+  // Somebody touched the board: the last two pictures show it half a millimetre away.
+  std::vector<CalibrationView> touched = stage_views(truth, {-0.3, -0.15, 0, 0.15, 0.3});
+  for (std::size_t i = 3; i < touched.size(); ++i) {
+    for (Eigen::Vector2d& corner : touched[i].board.corners_px) {
+      corner.x() += 7;
+    }
+  }
+  EXPECT_NE(refused(touched).find("the board on the stage is off by"), std::string::npos) << refused(touched);
+  // A degree in all says little of where the axis points; corners as good as these say enough for the
+  // default.
+  options.most_turntable_axis_rad = 0.002;
+  const std::string little = refused(stage_views(truth, {-0.011, 0, 0.011}));
+  EXPECT_NE(little.find("the turntable's axis is known to"), std::string::npos) << little;
+}
+
+/// Of a laser that stands beside the camera the stripe runs down the picture.
+TEST(Calibration, AsksForTheSideThatAStripeRunningDownDidNotReach) {
+  std::vector<CalibrationView> views = held_views();
+  const Result<Intrinsics> whole = find_intrinsics(views);
+  ASSERT_TRUE(whole.has_value());
+  for (CalibrationView& view : views) {
+    view.stripe_px.clear();
+    for (int y = 0; y < view.board.height / 2; y += 4) {
+      view.stripe_px.emplace_back(0.5 * view.board.width, y);
+    }
+  }
+  const Plane laser{.normal = {0.8, 0, 0.6}, .distance_mm = 150};
+  const std::vector<std::string> missing = missing_poses(views, *whole, board(), &laser);
+  const auto asks = [&](const char* side) {
+    return std::ranges::count(
+        missing, std::string("show the laser on the board at the ") + side + " side of the picture");
+  };
+  EXPECT_EQ(asks("lower"), 1);
+  EXPECT_EQ(asks("upper") + asks("left") + asks("right"), 0);
+}
+
+TEST(Calibration, AsksForThePosesThatAreMissing) {
+  std::vector<CalibrationView> views = held_views();
+  const Result<Intrinsics> whole = find_intrinsics(views);
+  ASSERT_TRUE(whole.has_value());
+  const auto tilts = [](const std::vector<std::string>& missing) {
+    return std::count_if(missing.begin(), missing.end(), [](const std::string& say) {
+      return say.find("tilt the board") != std::string::npos;
+    });
+  };
+  EXPECT_EQ(tilts(missing_poses(views, *whole, board(), nullptr)), 0);
+  // Only those whose right side is nearer.
+  Intrinsics right = *whole;
+  right.used.clear();
+  right.camera_from_board.clear();
+  for (std::size_t k = 0; k < whole->used.size(); ++k) {
+    if (whole->camera_from_board[k].rotation(0, 2) > 0.2) {
+      right.used.push_back(whole->used[k]);
+      right.camera_from_board.push_back(whole->camera_from_board[k]);
+    }
+  }
+  ASSERT_GT(right.used.size(), 0U);
+  const std::vector<std::string> missing = missing_poses(views, right, board(), nullptr);
+  EXPECT_TRUE(std::any_of(missing.begin(), missing.end(), [](const std::string& say) {
+    return say.find("its left side") != std::string::npos;
+  }));
+  EXPECT_TRUE(std::none_of(missing.begin(), missing.end(), [](const std::string& say) {
+    return say.find("its right side") != std::string::npos;
+  }));
+}
+
+}  // namespace
+}  // namespace dubsar
