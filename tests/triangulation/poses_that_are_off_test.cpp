@@ -134,7 +134,7 @@ TEST(PosesThatAreOff, AllOfThemStillGiveOneClosedSurface) {
   EXPECT_TRUE(report.is_manifold());
   EXPECT_EQ(report.self_intersections, 0U);
   EXPECT_EQ(report.components, 1U);
-  EXPECT_LT(report.boundary_length_mm, 20.0);
+  EXPECT_LT(report.boundary_length_mm, 2.0) << "19 mm where scans stay where their poses put them";
   EXPECT_GT(std::ranges::count_if(holding(set).overlaps(), [](const auto& o) { return o.is_off(); }), 6);
 }
 
