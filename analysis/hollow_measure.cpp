@@ -139,6 +139,7 @@ void HollowMeasure::note_ends_in_air(const HeightSurface& surface, double spacin
     const Eigen::Vector3f normal = surface.normal(exit.cast<float>());
     const Eigen::Vector3d up = normal.isZero() ? wedge.surface_normal : normal.cast<double>().eval();
     if (!mesh_reaches(mesh_, *source_.graph, found->vertices, exit, up, kEndSpacings * spacing_mm)) {
+      wedge.beyond_mesh[k] = true;
       wedge.sigma.length_mm[k] = kUnknown;
       wedge.sigma.volume_mm3 = kUnknown;
     }

@@ -152,6 +152,7 @@ WedgeCandidate measure_wedge(const WedgePatch& patch, const WedgeFaces& faces, c
   out.area_mm2 = 0.5 * std::abs(ab.x() * ac.y() - ab.y() * ac.x());
   wedge.vertex_count = static_cast<int>(out.vertices.size());
   wedge.reliability = std::clamp(weight / count, 0.0, 1.0);
+  wedge.faces_intact = out.coverage;
   wedge.intact = (out.coverage[0] + out.coverage[1] + out.coverage[2]) / 3.0;
   note_sigmas(faces, edges, {out.coverage, gap_mm}, patch.spacing_mm, exits, &wedge);
   return out;

@@ -23,7 +23,7 @@ void number_from_directional_edge(WedgeCandidate* candidate) {
        wedge.face_slopes_rad, wedge.edge_bows_mm);
   turn(wedge.sigma.edge_rad, wedge.sigma.edge_slope_rad, wedge.sigma.opening_rad, wedge.sigma.face_angle_rad,
        wedge.sigma.face_slope_rad, wedge.sigma.length_mm);
-  turn(candidate->coverage);
+  turn(wedge.faces_intact, wedge.beyond_mesh, candidate->coverage);
   for (std::int8_t& face : candidate->faces) {
     face = static_cast<std::int8_t>((face + 3 - first) % 3);
   }

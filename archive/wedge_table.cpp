@@ -144,6 +144,13 @@ std::vector<Column> columns(const FileLabel& label) {
   plain("reliability", [](const Wedge& w) { return w.reliability; });
   plain("confidence", [](const Wedge& w) { return w.confidence; });
   plain("intact", [](const Wedge& w) { return w.intact; });
+  for (std::size_t k = 0; k < 3; ++k) {
+    plain(fmt::format("face_intact_{}", k), [k](const Wedge& w) { return w.faces_intact[k]; });
+  }
+  for (std::size_t k = 0; k < 3; ++k) {
+    text(fmt::format("beyond_mesh_{}", k),
+         [k](const Wedge& w) { return std::string(w.beyond_mesh[k] ? "yes" : "no"); });
+  }
   text("vertex_count", [](const Wedge& w) { return std::to_string(w.vertex_count); });
   text("by_hand",
        [](const Wedge& w) { return std::string(kByHandNames[static_cast<std::size_t>(w.by_hand)]); });

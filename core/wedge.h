@@ -99,7 +99,9 @@ struct Wedge {
   double reliability = 0;
   double confidence = 0;
   int vertex_count = 0;
-  double intact = 1.0;  ///< share of the three faces that is there
+  double intact = 1.0;                                   ///< share of the three faces that is there
+  std::array<double, 3> faces_intact = {1.0, 1.0, 1.0};  ///< of each of them; NaN where nothing says it
+  std::array<bool, 3> beyond_mesh{};  ///< of each inner edge: the mesh ends before it, its exit is in the air
   ByHand by_hand = ByHand::kNo;
 };
 

@@ -185,6 +185,10 @@ std::string JsonNode::text() const {
   return value_->get<std::string>();
 }
 
+bool JsonNode::is_null() const {
+  return value_ != nullptr && value_->is_null();
+}
+
 bool JsonNode::is_text() const {
   return value_ != nullptr && value_->is_string();
 }

@@ -53,6 +53,7 @@ class JsonNode {
   [[nodiscard]] std::string text() const;
   /// For what another program may have said in a way of its own: nothing is noted.
   [[nodiscard]] bool is_text() const;
+  [[nodiscard]] bool is_null() const;  ///< nothing is known here, and that is said
   [[nodiscard]] bool is_whole_number(std::int64_t low, std::int64_t high) const;
   [[nodiscard]] bool boolean() const;
   /// The position in `words` of the text that stands here.

@@ -82,8 +82,8 @@ OrderedJson sigma_json(const WedgeSigma& sigma) {
   };
   json["depth_point"] = sigma.depth_point_mm;
   json["depth"] = sigma.depth_mm;
-  if (are_known(sigma.length_mm)) {
-    json["edge_lengths"] = sigma.length_mm;
+  if (std::ranges::any_of(sigma.length_mm, is_known)) {
+    json["edge_lengths"] = sigma.length_mm;  // null of one that is not known: the others are
   }
   add_degrees("edges_deg", sigma.edge_rad);
   add_degrees("edge_slopes_deg", sigma.edge_slope_rad);
@@ -113,7 +113,10 @@ WedgeSigma sigma_from(const JsonNode& node, double mm) {
   sigma.depth_point_mm = mm * node.at("depth_point").number(0);
   sigma.depth_mm = mm * node.at("depth").number(0);
   if (const auto lengths = node.find("edge_lengths")) {
-    sigma.length_mm = lengths_from(*lengths, mm);
+    const std::vector<JsonNode> nodes = three(*lengths);
+    for (std::size_t k = 0; k < nodes.size(); ++k) {
+      sigma.length_mm[k] = nodes[k].is_null() ? kUnknown : mm * nodes[k].number(0);
+    }
   }
   const auto read_degrees = [&node](const char* key, Three* angles_rad) {
     if (const auto degrees = node.find(key)) {
@@ -240,6 +243,12 @@ void add_measures(const Wedge& wedge, OrderedJson* json) {
     OrderedJson& edge = (*json)["inner_edges"][k];
     edge["exit_point_surface"] = json_of(wedge.exit_points_surface_mm[k]);
     edge["exit_point_extent"] = json_of(wedge.exit_points_extent_mm[k]);
+    if (wedge.beyond_mesh[k]) {
+      edge["beyond_mesh"] = true;
+    }
+  }
+  if (are_known(wedge.faces_intact)) {
+    (*json)["faces_intact"] = wedge.faces_intact;
   }
   (*json)["directional_by"] = kDirectionalBy[static_cast<std::size_t>(wedge.directional_by)];
   (*json)["directional_margin"] = wedge.directional_margin;
@@ -279,6 +288,9 @@ Wedge wedge_from(const JsonNode& node, double mm) {
     if (const auto exit = edges[k].find("exit_point_extent")) {
       wedge.exit_points_extent_mm[k] = mm * exit->vector3();
     }
+    if (const auto beyond = edges[k].find("beyond_mesh")) {
+      wedge.beyond_mesh[k] = beyond->boolean();
+    }
   }
   wedge.directional_edge = static_cast<int>(node.at("directional_edge").integer(0, 2));
   wedge.outer_vertices_mm = points_from(node.at("outer_vertices"), mm);
@@ -291,6 +303,13 @@ Wedge wedge_from(const JsonNode& node, double mm) {
   wedge.vertex_count = static_cast<int>(node.at("vertex_count").integer(0, kMaxInt));
   if (const auto intact = node.find("intact")) {
     wedge.intact = intact->number(0, 1);
+  }
+  wedge.faces_intact = kThreeUnknown;
+  if (const auto faces = node.find("faces_intact")) {
+    const std::vector<JsonNode> shares = three(*faces);
+    for (std::size_t k = 0; k < shares.size(); ++k) {
+      wedge.faces_intact[k] = shares[k].number(0, 1);
+    }
   }
   if (const auto by_hand = node.find("by_hand")) {
     static const std::vector<std::string> kNames(kByHandNames.begin(), kByHandNames.end());

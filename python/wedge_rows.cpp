@@ -51,6 +51,8 @@ struct WedgeRow {
   double confidence;
   std::int32_t vertex_count;
   double intact;
+  double faces_intact[3];
+  bool beyond_mesh[3];
   char by_hand[8];
 };
 
@@ -111,6 +113,8 @@ WedgeRow row_of(const Wedge& wedge) {
   row.confidence = wedge.confidence;
   row.vertex_count = wedge.vertex_count;
   row.intact = wedge.intact;
+  put(row.faces_intact, wedge.faces_intact);
+  std::ranges::copy(wedge.beyond_mesh, row.beyond_mesh);
   put(row.by_hand, kByHandNames[static_cast<std::size_t>(wedge.by_hand)]);
   return row;
 }
@@ -124,13 +128,14 @@ py::array wedge_rows(const std::vector<Wedge>& wedges) {
 }
 
 void bind_wedge_rows() {
-  PYBIND11_NUMPY_DTYPE(
-      WedgeRow, id, depth_point_mm, exit_points_mm, exit_points_surface_mm, exit_points_extent_mm,
-      outer_vertices_mm, face_normals, surface_normal, directional_edge, directional_by, directional_margin,
-      depth_mm, face_angles_rad, opening_angles_rad, edge_lengths_mm, edge_slopes_rad, face_slopes_rad,
-      edge_bows_mm, volume_mm3, sigma_depth_point_mm, sigma_depth_mm, sigma_edge_rad, sigma_edge_slope_rad,
-      sigma_opening_rad, sigma_face_angle_rad, sigma_face_slope_rad, sigma_length_mm, sigma_volume_mm3, side,
-      line, order, turn_rad, reliability, confidence, vertex_count, intact, by_hand);
+  PYBIND11_NUMPY_DTYPE(WedgeRow, id, depth_point_mm, exit_points_mm, exit_points_surface_mm,
+                       exit_points_extent_mm, outer_vertices_mm, face_normals, surface_normal,
+                       directional_edge, directional_by, directional_margin, depth_mm, face_angles_rad,
+                       opening_angles_rad, edge_lengths_mm, edge_slopes_rad, face_slopes_rad, edge_bows_mm,
+                       volume_mm3, sigma_depth_point_mm, sigma_depth_mm, sigma_edge_rad, sigma_edge_slope_rad,
+                       sigma_opening_rad, sigma_face_angle_rad, sigma_face_slope_rad, sigma_length_mm,
+                       sigma_volume_mm3, side, line, order, turn_rad, reliability, confidence, vertex_count,
+                       intact, faces_intact, beyond_mesh, by_hand);
 }
 
 }  // namespace dubsar::python

@@ -102,6 +102,9 @@ TEST(HollowMeasure, WhereTheMeshEndsBeforeAnEdgeDoesNobodyKnowsItsLength) {
   const Wedge whole = hollow().measured(hollow().vertices, {});
   const Wedge wedge = cut.measured(cut.vertices, {});
   ASSERT_GT(wedge.exit_points_surface_mm[0].x(), 1.5);
+  EXPECT_EQ(wedge.beyond_mesh, (std::array{true, false, false}));
+  EXPECT_EQ(whole.beyond_mesh, (std::array{false, false, false}));
+  EXPECT_LT(wedge.faces_intact[0], whole.faces_intact[0]) << "its outer end is gone";
   EXPECT_TRUE(std::isnan(wedge.sigma.length_mm[0]));
   EXPECT_TRUE(std::isnan(wedge.sigma.volume_mm3));
   EXPECT_GT(wedge.sigma.length_mm[1], 0);

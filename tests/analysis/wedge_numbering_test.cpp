@@ -29,7 +29,8 @@ TEST(WedgeNumbering, TurnsAllThatGoesByEdgesTogether) {
   w.face_angles_rad = w.opening_angles_rad = w.edge_lengths_mm = w.edge_slopes_rad = w.face_slopes_rad =
       w.edge_bows_mm = {0, 1, 2};
   w.sigma.edge_rad = w.sigma.edge_slope_rad = w.sigma.opening_rad = w.sigma.face_angle_rad =
-      w.sigma.face_slope_rad = w.sigma.length_mm = candidate.coverage = {0, 1, 2};
+      w.sigma.face_slope_rad = w.sigma.length_mm = w.faces_intact = candidate.coverage = {0, 1, 2};
+  w.beyond_mesh = {false, false, true};
   candidate.faces = {0, 1, 2};
   number_from_directional_edge(&candidate);
   EXPECT_EQ(w.directional_edge, 0);
@@ -43,9 +44,11 @@ TEST(WedgeNumbering, TurnsAllThatGoesByEdgesTogether) {
   for (const Three* values :
        {&w.face_angles_rad, &w.opening_angles_rad, &w.edge_lengths_mm, &w.edge_slopes_rad, &w.face_slopes_rad,
         &w.edge_bows_mm, &w.sigma.edge_rad, &w.sigma.edge_slope_rad, &w.sigma.opening_rad,
-        &w.sigma.face_angle_rad, &w.sigma.face_slope_rad, &w.sigma.length_mm, &candidate.coverage}) {
+        &w.sigma.face_angle_rad, &w.sigma.face_slope_rad, &w.sigma.length_mm, &w.faces_intact,
+        &candidate.coverage}) {
     EXPECT_EQ(*values, turned);
   }
+  EXPECT_EQ(w.beyond_mesh, (std::array{true, false, false}));
   EXPECT_EQ(candidate.faces, (std::vector<std::int8_t>{1, 2, 0})) << "what was face 2 is face 0";
   const WedgeCandidate once = candidate;
   number_from_directional_edge(&candidate);

@@ -39,6 +39,8 @@ TEST(WedgesJson, ReadsBackAllThatWasMeasured) {
   wedge.sigma.edge_slope_rad = {0.7, 0.8, 0.9};
   wedge.sigma.length_mm = {0.25, 0.5, 0.75};
   wedge.sigma.volume_mm3 = 0.75;
+  wedge.intact = 0.5;
+  wedge.faces_intact = {0.25, 0.5, 0.75};
   wedge.place = {Face::kReverse, 4, 17, -1.5, 2};
   file.wedges = {wedge, Wedge{}};
   file.rejected = {{"too shallow", {7, 8, 9}}};
@@ -69,6 +71,7 @@ TEST(WedgesJson, ReadsBackAllThatWasMeasured) {
   EXPECT_EQ(w.edge_lengths_mm, wedge.edge_lengths_mm);
   EXPECT_EQ(w.edge_bows_mm, wedge.edge_bows_mm);
   EXPECT_EQ(w.volume_mm3, 0.125);
+  EXPECT_EQ(w.faces_intact, wedge.faces_intact);
   EXPECT_NEAR(w.sigma.opening_rad[2], 0.3, 1e-14);
   EXPECT_NEAR(w.sigma.face_slope_rad[1], 0.5, 1e-14);
   EXPECT_NEAR(w.sigma.edge_slope_rad[2], 0.9, 1e-14);
@@ -122,11 +125,30 @@ TEST(WedgesJson, OfTheContractsKeysAloneTellTheRestOrSayNothing) {
   EXPECT_NEAR(w.volume_mm3, 0.5 * 0.8 * 1.1 / 3 * 0.6, 1e-12);
   EXPECT_EQ(w.exit_points_surface_mm, w.exit_points_mm);
   EXPECT_TRUE(std::isnan(w.sigma.depth_mm));
+  EXPECT_TRUE(std::isnan(w.faces_intact[0])) << "nobody said it";
   EXPECT_TRUE(std::isnan(w.sigma.opening_rad[1]));
   EXPECT_TRUE(std::isnan(w.face_slopes_rad[2]));
   const auto again = parse_wedges(wedges_to_json(*file), "w");
   ASSERT_TRUE(again) << line_of(again);
   EXPECT_TRUE(std::isnan(again->wedges.front().sigma.depth_mm));
+}
+
+TEST(WedgesJson, AnEdgeThatGoesOnBeyondTheMeshTakesNoSigmaOfTheOthers) {
+  constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+  WedgeFile file;
+  Wedge wedge;
+  wedge.sigma.length_mm = {0.25, kUnknown, 0.75};
+  wedge.sigma.volume_mm3 = kUnknown;
+  wedge.beyond_mesh = {false, true, false};
+  file.wedges = {wedge};
+  const auto back = parse_wedges(wedges_to_json(file), "w");
+  ASSERT_TRUE(back) << line_of(back);
+  const Wedge& w = back->wedges[0];
+  EXPECT_EQ(w.beyond_mesh, wedge.beyond_mesh);
+  EXPECT_EQ(w.sigma.length_mm[0], 0.25);
+  EXPECT_TRUE(std::isnan(w.sigma.length_mm[1]));
+  EXPECT_EQ(w.sigma.length_mm[2], 0.75);
+  EXPECT_TRUE(std::isnan(w.sigma.volume_mm3));
 }
 
 TEST(WedgesJson, SigmasThatNobodyKnowsAreLeftOutAndMissed) {
