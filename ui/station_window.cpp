@@ -14,6 +14,7 @@
 #include <fstream>
 #include <iterator>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "core/log.h"
@@ -24,6 +25,7 @@
 #include "ui/operator/operator_screen.h"
 #include "ui/shell/key_taps.h"
 #include "ui/shell/script.h"
+#include "ui/shell/typed_signs.h"
 #include "ui/viewer/pair_screen.h"
 #include "ui/viewer/viewer_screen.h"
 
@@ -43,6 +45,23 @@ double now_s() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
+/// Signs that ImGui cannot hold come and go by their stand-ins (ui/shell/typed_signs.h).
+void type_by_stand_ins(GLFWwindow* window) {
+  glfwSetCharCallback(
+      window, [](GLFWwindow* of, unsigned int sign) { ImGui_ImplGlfw_CharCallback(of, stand_in_of(sign)); });
+  ImGuiIO& io = ImGui::GetIO();
+  io.GetClipboardTextFn = [](void* of) -> const char* {
+    static std::string pasted;
+    const char* text = glfwGetClipboardString(static_cast<GLFWwindow*>(of));
+    pasted = stand_ins_of(text == nullptr ? "" : text);
+    return pasted.c_str();
+  };
+  io.SetClipboardTextFn = [](void* of, const char* text) {
+    glfwSetClipboardString(static_cast<GLFWwindow*>(of), signs_of(text).c_str());
+  };
+  io.ClipboardUserData = window;
+}
+
 /// ImGui and its back ends for a window; ends them when it goes.
 class GuiScope {
  public:
@@ -57,6 +76,7 @@ class GuiScope {
       }
     });
     ImGui_ImplGlfw_InitForOpenGL(window, true);  // its own callback calls that one
+    type_by_stand_ins(window);
     ImGui_ImplOpenGL3_Init("#version 410 core");
   }
   ~GuiScope() {

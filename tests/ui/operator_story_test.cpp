@@ -368,6 +368,24 @@ TEST_F(OperatorStory, SayingWhatTabletItIsOpensNoScanner) {
   EXPECT_EQ(tablet_record_of(*store).museum_number, "VAT 7");
 }
 
+TEST_F(OperatorStory, CuneiformStaysAsItIsWhenALineIsTypedInto) {
+  const Outcome scanned = play("wait idle\nkey space\nwait waiting-turn\nquit\n");
+  ASSERT_EQ(scanned.status, 0) << scanned.err;
+  const std::string number = "BM 𒀭 15285";
+  const std::string notes = "obv. 1: 𒁹𒀀 𒈗 the king 𝄞";
+  const Outcome told =
+      run_command({"session", "describe", session(), "--museum-number", number, "--notes", notes});
+  ASSERT_EQ(told.status, 0) << told.err;
+  const Outcome played = play(
+      "wait scan.0.fits\nclick tablet\nclick notes\nkey end\ntype 𒁇X\nclick close-tablet\npause 0.5\n"
+      "expect still\nquit\n");
+  ASSERT_EQ(played.status, 0) << played.err;
+  const Result<SessionStore> store = SessionStore::open(session(), SessionStore::Access::kReadOnly);
+  ASSERT_TRUE(store.has_value());
+  EXPECT_EQ(tablet_record_of(*store).museum_number, number);
+  EXPECT_EQ(tablet_record_of(*store).notes, notes + "𒁇X");
+}
+
 TEST_F(OperatorStory, TonesAreOffUntilTheyAreTicked) {
   // A player that writes down that it was called.
   const fs::path players = folder_.path() / "players";

@@ -10,6 +10,8 @@
 #include <sstream>
 #include <utility>
 
+#include "ui/shell/typed_signs.h"
+
 namespace dubsar::ui {
 
 namespace {
@@ -245,7 +247,7 @@ void ScriptPlayer::inject(const UiContext& ui, double now_s) {
       return;
     case Kind::kType:
       if (frame_++ == 0) {
-        io.AddInputCharactersUTF8(step.name.c_str());
+        io.AddInputCharactersUTF8(stand_ins_of(step.name).c_str());
       } else {
         go_on();
       }

@@ -144,6 +144,8 @@ constexpr TextRow kRows[] = {
     {Text::kRecordNotKept, "Not kept: the session could not be written to. Close tries again.",
      "Nicht aufgehoben: in die Sitzung ließ sich nicht schreiben. Schließen versucht es noch einmal."},
     {Text::kNotKept, "not kept", "nicht aufgehoben"},
+    {Text::kSignsKept, "? stands for signs that are kept, not shown",
+     "? steht für Zeichen, die bleiben, hier aber nicht zu sehen sind"},
     {Text::kDevice, "Scanner", "Scanner"},
     {Text::kSettings, "Settings", "Einstellungen"},
     {Text::kView, "Viewer", "Betrachter"},

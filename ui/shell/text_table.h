@@ -122,6 +122,7 @@ enum class Text {
   kKept,
   kRecordNotKept,
   kNotKept,
+  kSignsKept,
   kDevice,
   kSettings,
   kView,

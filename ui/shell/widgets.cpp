@@ -5,6 +5,8 @@
 #include <algorithm>
 
 #include "archive/seen_line.h"
+#include "core/utf8.h"
+#include "ui/shell/typed_signs.h"
 
 namespace dubsar::ui {
 
@@ -132,6 +134,9 @@ bool text_line(UiContext& ui, const char* name, const char* label, std::string& 
   if (const std::string seen = seen_line(value); seen != value) {
     ImGui::SameLine(0, ui.px(1));
     coloured_text(ui.colours.ghost, seen.c_str());
+  } else if (stand_ins_of(value) != as_utf8(value)) {
+    ImGui::SameLine(0, ui.px(1));
+    coloured_text(ui.colours.ghost, ui.text(Text::kSignsKept));
   }
   return short_text(ui, name, value, -1);
 }
@@ -139,12 +144,19 @@ bool text_line(UiContext& ui, const char* name, const char* label, std::string& 
 bool short_text(UiContext& ui, const char* name, std::string& value, float width) {
   ImGui::PushID(name);
   ImGui::SetNextItemWidth(width);
-  const std::string typed = value;
-  bool changed = ImGui::InputText("##text", value.data(), value.capacity() + 1,
-                                  ImGuiInputTextFlags_CallbackResize, grow, &value);
+  std::string line = stand_ins_of(value);
+  const std::string typed = line;
+  bool changed = ImGui::InputText(
+      "##text", line.data(), line.capacity() + 1,
+      ImGuiInputTextFlags_CallbackResize |
+          (can_be_typed_into(value) ? ImGuiInputTextFlags_None : ImGuiInputTextFlags_ReadOnly),
+      grow, &line);
   if (ImGui::IsItemDeactivated() && ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape), false)) {
-    value = typed;  // escape leaves a line, ImGui would put back what stood there before
+    line = typed;  // escape leaves a line, ImGui would put back what stood there before
     changed = true;
+  }
+  if (changed) {
+    value = one_line(signs_of(line.c_str()));
   }
   ui.target(name);
   ImGui::PopID();
