@@ -5,6 +5,7 @@
 #include <array>
 
 #include "core/lower_case.h"
+#include "formats/ply_scan_info.h"
 #include "formats/text_scanner.h"
 
 namespace dubsar {
@@ -203,6 +204,11 @@ Result<PlyHeader> parse_ply_header(std::string_view bytes, const std::string& wh
                        ? "no end_header in the first " + std::to_string(kMaxPlyHeaderBytes) + " bytes"
                        : "the file ends within its PLY header (no end_header)",
                    "the file is cut short or not a PLY file: copy or export it again");
+}
+
+bool states_unit(std::string_view bytes, const std::string& where) {
+  const Result<PlyHeader> header = is_ply(bytes) ? parse_ply_header(bytes, where) : Result<PlyHeader>();
+  return header && header->info_value(ply_info::kUnit).has_value();
 }
 
 }  // namespace dubsar

@@ -58,5 +58,7 @@ struct PlyHeader {
 /// Parses the header (Turk 1994). Lines with a keyword that the format does not know are passed over. Names
 /// come in small letters, however they are written. CRLF is taken for LF. Errors name the header line.
 [[nodiscard]] Result<PlyHeader> parse_ply_header(std::string_view bytes, const std::string& where);
+/// Whether these bytes, or the first of a file, are a PLY's whose header says its unit (ply_info::kUnit).
+[[nodiscard]] bool states_unit(std::string_view bytes, const std::string& where);
 
 }  // namespace dubsar

@@ -3,6 +3,7 @@
 #include "station/mesh_viewing.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <Eigen/Geometry>
 #include <limits>
@@ -11,11 +12,14 @@
 #include "analysis/curvature.h"
 #include "analysis/integral_invariants.h"
 #include "analysis/openness.h"
+#include "analysis/tablet_size.h"
 #include "analysis/vertex_geometry.h"
 #include "core/tablet_frame.h"
 #include "core/thread_priority.h"
+#include "formats/atomic_file.h"
 #include "formats/file_label_reader.h"
 #include "formats/mesh_io.h"
+#include "formats/ply_header.h"
 #include "station/analysis.h"
 #include "station/outward_faces.h"
 #include "station/place_outside.h"
@@ -29,8 +33,16 @@ namespace {
 
 namespace fs = std::filesystem;
 
+/// Whether the file says what its numbers are: a GLB is in metres, a PLY of ours has it in its header.
+bool states_its_unit(const fs::path& file) {
+  constexpr std::size_t kHeadBytes = std::size_t{64} << 10U;
+  const Result<std::string> head = read_file_head(file, kHeadBytes);
+  return file.extension() == ".glb" || (head && states_unit(*head, file.string()));
+}
+
 /// What somebody who measures on it has to know of its numbers.
-std::optional<Error> odd_numbers(const Mesh& mesh, const std::string& where) {
+std::optional<Error> odd_numbers(const Mesh& mesh, const fs::path& file) {
+  const std::string where = file.filename().string();
   Eigen::AlignedBox3f box;
   for (const Eigen::Vector3f& p : mesh.positions) {
     if (p.allFinite()) {
@@ -44,7 +56,7 @@ std::optional<Error> odd_numbers(const Mesh& mesh, const std::string& where) {
   const double far_mm = static_cast<double>(box.min().cwiseAbs().cwiseMax(box.max().cwiseAbs()).maxCoeff());
   const double step_mm = far_mm * static_cast<double>(std::numeric_limits<float>::epsilon());
   constexpr double kCoarseStep = 2e-5;  // of the size: a micrometre on a tablet of 5 cm
-  constexpr double kSmallMm = 2;        // no tablet; one of 20 cm in metres would be 0.2
+  constexpr double kSmallMm = 2;        // no tablet and no part of one, whatever the file says
   if (step_mm > kCoarseStep * size_mm) {
     return Error{
         ErrorKind::kBadInput,
@@ -52,10 +64,15 @@ std::optional<Error> odd_numbers(const Mesh& mesh, const std::string& where) {
                     far_mm, step_mm),
         where, "export it again with its middle at the origin"};
   }
-  if (size_mm > 0 && size_mm < kSmallMm) {
-    return Error{ErrorKind::kBadInput,
-                 fmt::format("it is {:.2g} mm large, perhaps its numbers are metres", size_mm), where,
-                 "dubsar mesh convert --unit m makes millimetres of them"};
+  std::vector<std::string_view> units = likelier_units(size_mm, 1.0);
+  if (units.empty() && size_mm > 0 && size_mm < kSmallMm) {
+    units = {"m"};
+  }
+  if (!units.empty() && (size_mm < kSmallMm || !states_its_unit(file))) {
+    return Error{
+        ErrorKind::kBadInput,
+        fmt::format("it is {:.3g} mm large, perhaps its numbers are {}", size_mm, fmt::join(units, ", ")),
+        where, fmt::format("dubsar mesh convert --unit {} makes millimetres of them", units.front())};
   }
   return std::nullopt;
 }
@@ -212,7 +229,7 @@ void MeshViewing::open(const fs::path& file) {
       return;
     }
     const RigidTransform tablet_from_model = tablet_frame(*read);
-    std::optional<Error> odd = odd_numbers(*read, file.filename().string());
+    std::optional<Error> odd = odd_numbers(*read, file);
     odd = odd ? odd : inside_out(*read, file.filename().string());
     label_ = read_mesh_label(file);
     take_mesh(std::make_shared<const Mesh>(std::move(*read)), tablet_from_model, file.filename().string());

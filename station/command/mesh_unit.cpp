@@ -16,7 +16,6 @@
 #include "formats/atomic_file.h"
 #include "formats/mesh_io.h"
 #include "formats/ply_header.h"
-#include "formats/ply_scan_info.h"
 
 namespace dubsar {
 
@@ -52,11 +51,6 @@ std::string choices(const Eigen::Vector3d& numbers, std::string_view without) {
     out += all[k];
   }
   return out;
-}
-
-bool states_unit(std::string_view bytes, const std::string& file) {
-  const Result<PlyHeader> header = is_ply(bytes) ? parse_ply_header(bytes, file) : Result<PlyHeader>();
-  return header && header->info_value(ply_info::kUnit).has_value();
 }
 
 }  // namespace

@@ -29,6 +29,7 @@ namespace dubsar {
 namespace {
 
 namespace fs = std::filesystem;
+using ::testing::HasSubstr;
 using ::testing::SizeIs;
 
 void settle(const MeshViewing& viewing) {
@@ -94,6 +95,31 @@ class MeshViewingTest : public testing::Test {
 };
 Mesh* MeshViewingTest::tablet_ = nullptr;
 std::vector<Eigen::Vector3d> MeshViewingTest::wedges_mm_;
+
+TEST_F(MeshViewingTest, NumbersThatAreNoMillimetresAreTold) {
+  const auto said_of = [this](double factor, const char* header) {
+    Mesh scaled = *tablet_;  // 20 mm across
+    for (Eigen::Vector3f& p : scaled.positions) {
+      p *= static_cast<float>(factor);
+    }
+    EXPECT_TRUE(write_mesh(mesh_, scaled));
+    std::string bytes = *read_whole_file(mesh_);
+    for (std::size_t at; header == nullptr && (at = bytes.find("obj_info")) != std::string::npos;) {
+      bytes.erase(at, bytes.find('\n', at) + 1 - at);  // as another program writes it
+    }
+    EXPECT_TRUE(write_file_atomically(mesh_, bytes));
+    const ViewedMesh state = Viewer(mesh_).state();
+    return state.error ? state.error->line() : std::string();
+  };
+  EXPECT_THAT(said_of(0.1, nullptr), HasSubstr("perhaps its numbers are cm"));
+  EXPECT_THAT(said_of(0.1, nullptr), HasSubstr("mesh convert --unit cm makes"));
+  EXPECT_THAT(said_of(0.04, nullptr), HasSubstr("cm, in"));
+  EXPECT_THAT(said_of(0.001, nullptr), HasSubstr("perhaps its numbers are m;"));
+  EXPECT_THAT(said_of(1000, nullptr), HasSubstr("perhaps its numbers are um"));
+  EXPECT_EQ(said_of(1, nullptr), "");
+  EXPECT_EQ(said_of(0.2, "ours"), "") << "a part of a tablet whose file says its unit";
+  EXPECT_THAT(said_of(0.05, "ours"), HasSubstr("perhaps its numbers are")) << "whatever it says";
+}
 
 TEST_F(MeshViewingTest, ACorrectionThatAnotherProgramMadeMeanwhileStays) {
   Viewer one(mesh_);

@@ -96,8 +96,9 @@ constexpr EnginePhrase kRemarks[] = {
     {" mm from the origin of its numbers, where places are good to ",
      " mm vom Ursprung seiner Zahlen, wo Orte so genau sind: "},
     {"export it again with its middle at the origin", "noch einmal mit der Mitte im Ursprung ausgeben"},
-    {" mm large, perhaps its numbers are metres", " mm groß, vielleicht sind seine Zahlen Meter"},
-    {"dubsar mesh convert --unit m makes millimetres of them", "noch einmal in Millimetern ausgeben"},
+    {" mm large, perhaps its numbers are ", " mm groß, vielleicht sind seine Zahlen in "},
+    {"dubsar mesh convert --unit ", "noch einmal in Millimetern ausgeben, nicht in "},
+    {" makes millimetres of them", ""},
 };
 
 }  // namespace
