@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "core/rig_limits.h"
+#include "core/rigid_matrix.h"
 
 namespace dubsar::abi {
 
@@ -228,12 +229,14 @@ Result<ScanInfo> scan_info_from(const dubsar_scan_info& from, const std::string&
   out.view = view_from(from.view);
   if ((from.flags & DUBSAR_SCAN_NOMINAL) != 0) {
     NominalPose nominal;
-    std::array<double, 16> pose{};
-    std::copy_n(from.tablet_from_scanner, 16, pose.begin());
-    nominal.tablet_from_scanner = RigidTransform::from_row_major(pose);
-    if (!nominal.tablet_from_scanner.is_rigid()) {
-      return std::unexpected(faulty(where, "told a nominal pose that is no rigid motion"));
+    const std::optional<RigidTransform> pose = rigid_from_row_major(from.tablet_from_scanner);
+    if (!pose) {
+      return std::unexpected(
+          faulty(where,
+                 "told a nominal pose that is no rigid motion, written row by row with the "
+                 "last row 0 0 0 1"));
     }
+    nominal.tablet_from_scanner = *pose;
     nominal.placement = from.placement;
     nominal.sigma_mm = positive_or_zero(from.sigma_mm);
     nominal.sigma_rad = positive_or_zero(from.sigma_rad);

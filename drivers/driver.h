@@ -10,7 +10,7 @@
  * - Every struct starts with struct_size (the driver itself with abi_version, then struct_size), set by
  * whoever makes the struct, or lends it to be filled, to the sizeof that he was compiled with. Structs grow
  * at their end only; nobody reads or writes a byte beyond struct_size.
- * - Lengths are millimetres, angles radians, frames right-handed, matrices 4 x 4 row major and rigid.
+ * - Lengths are mm, angles radians, frames right-handed, matrices 4 x 4, row by row, rigid, last row 0 0 0 1.
  * - Strings are UTF-8 and end with NUL; those that are handed to a callback live until it returns.
  * - Dubsar uses a device from one thread at a time; different devices may be used at once. All callbacks come
  * on the thread that made the call. A driver that captures with a thread of its own hands the profiles over
@@ -201,7 +201,7 @@ typedef struct dubsar_scan_info {
   dubsar_view view;
   /* The pose that the motors (and the asked-for hand turn) say, with standard deviations. Scans of one
    * placement number were taken without lifting the tablet and agree to sigma_*; between placements they
-   * agree to hand_sigma_* only. */
+   * agree to hand_sigma_* only. The translation is in numbers 3, 7 and 11; another layout is refused. */
   double tablet_from_scanner[16];
   int32_t placement;
   int32_t reserved;

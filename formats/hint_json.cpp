@@ -5,8 +5,10 @@
 #include <charconv>
 #include <cmath>
 #include <limits>
+#include <span>
 #include <vector>
 
+#include "core/rigid_matrix.h"
 #include "formats/atomic_file.h"
 #include "formats/json_node.h"
 #include "formats/json_text.h"
@@ -123,14 +125,12 @@ Result<RigidTransform> parse_pose_numbers(std::string_view text, const std::stri
   if (!numbers || numbers->size() != 16) {
     return bad_input(where, "a pose is 16 numbers, row by row", "the last four are 0 0 0 1");
   }
-  std::array<double, 16> m{};
-  std::copy(numbers->begin(), numbers->end(), m.begin());
-  const RigidTransform pose = RigidTransform::from_row_major(m);
-  if (!pose.is_rigid() || m[12] != 0 || m[13] != 0 || m[14] != 0 || m[15] != 1) {
+  const std::optional<RigidTransform> pose = rigid_from_row_major(std::span(*numbers).first<16>());
+  if (!pose) {
     return bad_input(where, "the pose is not a rigid transform",
                      "its turn must be right-handed and without scale, and the last row 0 0 0 1");
   }
-  return pose.orthonormalised();
+  return pose->orthonormalised();
 }
 
 }  // namespace dubsar

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/rigid_matrix.h"
 #include "core/units.h"
 #include "formats/text_scanner.h"
 
@@ -250,17 +251,13 @@ RigidTransform JsonNode::transform(double mm_per_unit) const {
   if (value_ == nullptr || complaint_->has_value()) {
     return {};
   }
-  std::array<double, 16> m{};
-  std::copy(values.begin(), values.end(), m.begin());
-  RigidTransform t = RigidTransform::from_row_major(m);
-  if (!t.is_rigid() || m[12] != 0 || m[13] != 0 || m[14] != 0 || m[15] != 1) {
+  const std::optional<RigidTransform> rigid = rigid_from_row_major(std::span(values).first<16>());
+  if (!rigid) {
     complain("is not a rigid transform (rotation, translation, last row 0 0 0 1; row major)");
     return {};
   }
   constexpr double kExact = 1e-9;
-  if (!t.is_rigid(kExact)) {
-    t = t.orthonormalised();
-  }
+  RigidTransform t = rigid->is_rigid(kExact) ? *rigid : rigid->orthonormalised();
   t.translation_mm *= mm_per_unit;
   return t;
 }

@@ -12,6 +12,7 @@
 #include "formats/grid_file.h"
 #include "formats/grid_ply.h"
 #include "formats/grid_reader.h"
+#include "formats/place_precision.h"
 #include "formats/scan_folder.h"
 #include "python/file_text.h"
 #include "python/jobs.h"
@@ -77,6 +78,7 @@ GridPointer make_grid(const Input<float>& x, const Input<float>& y, const Input<
   }
   grid->spacing_mm = spacing_mm > 0 ? spacing_mm : estimate_spacing_mm(*grid);
   grid->source = bytes_of(source);
+  value_of(check_precision(*grid, grid->source.empty() ? "the grid" : grid->source));
   return grid;
 }
 

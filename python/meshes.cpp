@@ -4,10 +4,15 @@
 
 #include <algorithm>
 #include <limits>
+#include <span>
 
+#include "core/inside_out.h"
+#include "core/rigid_matrix.h"
 #include "core/units.h"
 #include "formats/mesh_io.h"
+#include "formats/place_precision.h"
 #include "python/jobs.h"
+#include "station/mesh_json.h"
 #include "triangulation/mesh_check.h"
 
 namespace dubsar::python {
@@ -81,6 +86,7 @@ MeshPointer make_mesh(const Input<float>& vertices, const py::object& given_face
     mesh->reliability.assign(reliability->data(), reliability->data() + count);
   }
   check_sound(*mesh);
+  value_of(check_precision(*mesh, "the mesh"));
   return mesh;
 }
 
@@ -110,29 +116,22 @@ auto rows(std::vector<Row> Mesh::*member, bool always) {
   };
 }
 
-py::dict report_of(const MeshReport& report) {
+/// What `dubsar mesh check --json` says, key by key.
+py::dict report_of(const MeshReport& report, bool inside_out) {
   py::dict out;
-  out["manifold"] = report.is_manifold();
-  out["closed"] = report.is_closed();
-  out["vertices"] = report.vertices;
-  out["faces"] = report.faces;
-  out["components"] = report.components;
-  out["largest_component_faces"] = report.largest_component;
-  out["boundary_loops"] = report.boundary_loops;
-  out["boundary_edges"] = report.boundary_edges;
-  out["boundary_length_mm"] = report.boundary_length_mm;
-  out["non_manifold_edges"] = report.non_manifold_edges;
-  out["non_manifold_vertices"] = report.non_manifold_vertices;
-  out["inconsistent_faces"] = report.inconsistent_faces;
-  out["degenerate_faces"] = report.degenerate_faces;
-  out["duplicate_faces"] = report.duplicate_faces;
-  out["repeated_faces"] = report.repeated_faces;
-  out["self_intersections"] = report.self_intersections;
-  out["unreferenced_vertices"] = report.unreferenced_vertices;
-  out["area_mm2"] = report.area_mm2;
-  const Eigen::Vector3f size =
-      report.box.isEmpty() ? Eigen::Vector3f::Zero().eval() : report.box.sizes().eval();
-  out["size_mm"] = py::make_tuple(size.x(), size.y(), size.z());
+  const nlohmann::ordered_json said = mesh_report_json(report);
+  for (const auto& [key, value] : said.items()) {
+    if (value.is_boolean()) {
+      out[key.c_str()] = value.get<bool>();
+    } else if (value.is_array()) {
+      out[key.c_str()] = py::tuple(py::cast(value.get<std::vector<double>>()));
+    } else if (value.is_number_float()) {
+      out[key.c_str()] = value.get<double>();
+    } else {
+      out[key.c_str()] = value.get<std::size_t>();
+    }
+  }
+  out["inside_out"] = inside_out;
   return out;
 }
 
@@ -185,8 +184,12 @@ void bind_meshes(py::module_& module) {
       [](const MeshPointer& mesh) {
         check_sound(*mesh);
         MeshReport report;
-        run_job(py::none(), [&](JobContext& job) { report = check_mesh(*mesh, job); });
-        return report_of(report);
+        bool inside_out = false;
+        run_job(py::none(), [&](JobContext& job) {
+          report = check_mesh(*mesh, job);
+          inside_out = is_inside_out(*mesh);
+        });
+        return report_of(report, inside_out);
       },
       py::arg("mesh").none(false), "Topology and size, as `dubsar mesh check` tells them.");
 }
@@ -217,15 +220,16 @@ py::array_t<double> matrix_of(const RigidTransform& transform) {
 }
 
 RigidTransform transform_of(const Input<double>& matrix, const std::string& what) {
-  std::array<double, 16> numbers{};
   if (matrix.ndim() == 2 && matrix.shape(0) == 4 && matrix.shape(1) == 4) {
-    std::copy_n(matrix.data(), 16, numbers.begin());
-    const RigidTransform transform = RigidTransform::from_row_major(numbers);
-    if (transform.is_rigid()) {
-      return transform.orthonormalised();
+    const auto transform = rigid_from_row_major(std::span<const double, 16>(matrix.data(), 16));
+    if (transform) {
+      return transform->orthonormalised();
     }
   }
-  raise({ErrorKind::kUsage, what + " is no rigid transform", {}, "give a 4 x 4 matrix, millimetres"});
+  raise({ErrorKind::kUsage,
+         what + " is no rigid transform",
+         {},
+         std::string("give a matrix ") + kRigidMatrixLayout});
 }
 
 std::optional<double> mm_per_unit_named(const std::optional<std::string>& unit) {

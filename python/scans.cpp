@@ -3,6 +3,7 @@
 // From range grids to poses, and from grids in their places to a mesh.
 
 #include <cmath>
+#include <utility>
 
 #include "core/scan_copies.h"
 #include "formats/pins_json.h"
@@ -12,6 +13,7 @@
 #include "python/jobs.h"
 #include "registration/registrar.h"
 #include "station/station_scan.h"
+#include "triangulation/placed_precision.h"
 #include "triangulation/stitcher.h"
 
 namespace dubsar::python {
@@ -60,6 +62,7 @@ Result<Registered> register_grids(const Grids& grids, const PinSet* pins,
   for (ScanPose& pose : out.poses) {
     const RangeGrid& grid = *grids[static_cast<std::size_t>(pose.id)];
     pose.file = grid.source;
+    pose = PlacedPrecision(grid).judged(std::move(pose));
     if (pose.status == PoseStatus::kRegistered) {
       prints.add(pose.id, scan_print(grid));
     }

@@ -100,6 +100,7 @@ class _MeshReport(TypedDict):
     boundary_loops: int
     boundary_edges: int
     boundary_length_mm: float
+    longest_boundary_loop_mm: float
     non_manifold_edges: int
     non_manifold_vertices: int
     inconsistent_faces: int
@@ -108,8 +109,11 @@ class _MeshReport(TypedDict):
     repeated_faces: int
     self_intersections: int
     unreferenced_vertices: int
+    share_below_10_deg: float
+    min_angle_deg: float
     area_mm2: float
     size_mm: tuple[float, float, float]
+    inside_out: bool
 
 class Pose:
     def __init__(

@@ -4,6 +4,10 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
+#include <cmath>
+
+#include "core/rigid_matrix.h"
 #include "core/units.h"
 
 namespace dubsar {
@@ -23,6 +27,39 @@ TEST(RigidTransform, RowMajorRoundTrip) {
   EXPECT_EQ(back.rotation, kA.rotation);
   EXPECT_EQ(back.translation_mm, kA.translation_mm);
   EXPECT_EQ(kA.row_major()[3], 1.0);
+}
+
+TEST(RigidMatrix, IsTakenRowByRowAlone) {
+  const auto rows = kA.row_major();
+  const auto taken = rigid_from_row_major(rows);
+  ASSERT_TRUE(taken);
+  EXPECT_EQ(taken->rotation, kA.rotation);
+  EXPECT_EQ(taken->translation_mm, kA.translation_mm);
+
+  std::array<double, 16> columns{};
+  for (std::size_t k = 0; k < 16; ++k) {
+    columns[k] = rows[4 * (k % 4) + k / 4];
+  }
+  EXPECT_FALSE(rigid_from_row_major(columns)) << "its turn alone is one, and the translation would be lost";
+}
+
+TEST(RigidMatrix, TheLastRowIsLookedAt) {
+  const auto with = [](std::size_t at, double value) {
+    auto numbers = kA.row_major();
+    numbers[at] = value;
+    return rigid_from_row_major(numbers).has_value();
+  };
+  for (const double not_one : {0.0, 2.0, -1.0, 1.001, std::nan("")}) {
+    EXPECT_FALSE(with(15, not_one)) << not_one;
+  }
+  for (const std::size_t at : {12U, 13U, 14U}) {
+    EXPECT_FALSE(with(at, 0.1)) << at;
+    EXPECT_FALSE(with(at, -0.1)) << at;
+    EXPECT_FALSE(with(at, std::nan(""))) << at;
+    EXPECT_TRUE(with(at, -1e-17)) << "what an inverse leaves of 0: " << at;
+  }
+  EXPECT_FALSE(with(0, 2.0)) << "no turn";
+  EXPECT_FALSE(with(3, std::nan(""))) << "no translation";
 }
 
 TEST(RigidTransform, SmallAndLargeAngles) {

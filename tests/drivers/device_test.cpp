@@ -127,6 +127,20 @@ TEST_F(DeviceTest, PlacesWithinItsReachOnly) {
   EXPECT_FALSE(device.place({.turntable_rad = 0, .tilt_rad = 0, .hand_turn = RigidTransform{}}));
 }
 
+TEST_F(DeviceTest, ANominalPoseColumnByColumnIsAFaultOfTheDriver) {
+  Recorder rows;
+  ASSERT_TRUE(open("good").scan(rows));
+  ASSERT_TRUE(rows.infos[0].nominal);
+  EXPECT_EQ(rows.infos[0].nominal->tablet_from_scanner.translation_mm, Eigen::Vector3d(5, 0, 0));
+
+  Recorder columns;
+  const auto outcome = open("columns").scan(columns);
+  ASSERT_FALSE(outcome) << "its translation would be lost";
+  EXPECT_THAT(outcome.error().line(), HasSubstr("told a nominal pose that is no rigid motion"));
+  EXPECT_THAT(outcome.error().line(), HasSubstr("row by row with the last row 0 0 0 1"));
+  EXPECT_TRUE(columns.infos.empty());
+}
+
 TEST_F(DeviceTest, SettingsAreCheckedAgainstWhatTheyTake) {
   Device device = open("good");
   ASSERT_EQ(device.settings().value().size(), 4U);

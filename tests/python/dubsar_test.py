@@ -127,6 +127,12 @@ class Grids(unittest.TestCase):
         with self.assertRaises(dubsar.UsageError):
             dubsar.Grid(x, x, x, valid=np.ones((5, 4), bool))
 
+    def test_numbers_of_a_map_are_refused_before_they_are_rounded(self):
+        y, x = np.mgrid[0:20, 0:30] * 0.1
+        self.assertEqual(len(dubsar.Grid(x + 900, y, x)), 600)
+        with self.assertRaisesRegex(dubsar.BadInputError, "utm.ply: lies 500 m from the origin, too far for its samples"):
+            dubsar.Grid(x + 5e5, y, x, source="utm.ply")
+
     def test_files_give_the_same_samples_back(self):
         grid = plane()
         with tempfile.TemporaryDirectory() as folder:
@@ -178,7 +184,29 @@ class Meshes(unittest.TestCase):
         self.assertAlmostEqual(report["area_mm2"], 1.5 + np.sqrt(3) / 2, places=5)
         mesh.vertices[3, 2] = 2
         self.assertEqual(dubsar.check_mesh(mesh)["size_mm"], (1, 1, 2))
+        self.assertEqual((report["inside_out"], report["longest_boundary_loop_mm"]), (False, 0))
+        self.assertAlmostEqual(report["min_angle_deg"], 45, places=5)
+        self.assertEqual(report["share_below_10_deg"], 0)
+        inwards = dubsar.check_mesh(dubsar.Mesh(self.corners, [side[::-1] for side in self.sides]))
+        self.assertIs(inwards["inside_out"], True)
         self.assertFalse(dubsar.check_mesh(dubsar.Mesh(self.corners, self.sides[:3]))["closed"])
+
+    def test_numbers_of_a_map_are_refused_before_they_are_rounded(self):
+        near = dubsar.Mesh(np.array(self.corners) * 0.1 + 900, self.sides)
+        self.assertEqual(len(near.faces), 4)
+        with self.assertRaisesRegex(dubsar.BadInputError, "lies 500 m from the origin, too far for its vertices"):
+            dubsar.Mesh(np.array(self.corners) * 0.1 + [5e5, 0, 0], self.sides)
+
+    def test_the_report_is_what_the_stub_says(self):
+        stub = os.path.join(os.path.dirname(dubsar.__file__), "__init__.pyi")
+        with open(stub, encoding="utf-8") as file:
+            (report,) = (
+                node for node in ast.parse(file.read()).body if getattr(node, "name", "") == "_MeshReport"
+            )
+        self.assertEqual(
+            {field.target.id for field in report.body},
+            set(dubsar.check_mesh(dubsar.Mesh(self.corners, self.sides))),
+        )
 
     def test_faces_of_vertices_that_are_not_there(self):
         for bad in ([[0, 1, 4]], [[0, 1, -1]], [[0, 1]]):
@@ -322,6 +350,28 @@ class Pipeline(Scans):
         with self.assertRaisesRegex(dubsar.BadInputError, "1000 m from the origin"):
             dubsar.stitch([plane()], [dubsar.Pose(0, far)])
 
+    def test_a_pose_in_the_numbers_of_a_map_fails_as_the_command_has_it(self):
+        far = self.truth[0].model_from_scanner.copy()
+        far[0, 3] += 5e5
+        (pose,) = dubsar.register(self.grids[:1], starts=[far])
+        self.assertEqual(pose.status, "failed")
+        self.assertIn("500 m from the origin", pose.reason)
+
+    def test_a_matrix_laid_out_otherwise_is_refused(self):
+        right = self.truth[1].model_from_scanner
+        np.testing.assert_allclose(dubsar.Pose(1, right).model_from_scanner, right, atol=1e-9)
+        inverse = np.linalg.inv(right)
+        np.testing.assert_allclose(dubsar.Pose(1, inverse).model_from_scanner, inverse, atol=1e-9)
+        wrong = [right.T]
+        for last in ([0, 0, 0, 2], [0, 0, 0, 0], [0.1, 0, 0, 1], [0, 0, 0, np.nan]):
+            wrong.append(right.copy())
+            wrong[-1][3] = last
+        for matrix in wrong:
+            with self.assertRaisesRegex(dubsar.UsageError, "model_from_scanner is no rigid .* last row 0 0 0 1"):
+                dubsar.Pose(1, matrix)
+            with self.assertRaisesRegex(dubsar.UsageError, "a start is no rigid transform; .* in the last column"):
+                dubsar.register(self.grids[:2], starts=[None, matrix])
+
     def test_nothing_is_written_into_a_session_or_a_package(self):
         wedges = dubsar.analyze(self.mesh)
         with tempfile.TemporaryDirectory() as folder:
@@ -416,7 +466,8 @@ class Pipeline(Scans):
     def test_what_cannot_be_measured_is_refused(self):
         with self.assertRaisesRegex(dubsar.BadInputError, "its numbers look like um"):
             dubsar.analyze(dubsar.Mesh(self.mesh.vertices * 10000, self.mesh.faces))
-        far = dubsar.Mesh(self.mesh.vertices + np.float32(1e6), self.mesh.faces)
+        far = dubsar.Mesh(self.mesh.vertices, self.mesh.faces)
+        far.vertices[:] += np.float32(1e6)
         with self.assertRaisesRegex(dubsar.BadInputError, "so far from the origin"):
             dubsar.analyze(far)
         with self.assertRaisesRegex(dubsar.BadInputError, "nothing inscribed is that large"):

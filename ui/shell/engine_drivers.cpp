@@ -29,7 +29,9 @@ constexpr EnginePhrase kDrivers[] = {
     {"told a head that is no box", "meldet einen Kopf, der kein Quader ist"},
     {"told an arm that stands nowhere", "meldet einen Arm, der nirgends steht"},
     {"announced profiles of ", "kündigt unmögliche Profile an: "},
-    {"told a nominal pose that is no rigid motion", "meldet eine Stellung, die keine starre Bewegung ist"},
+    {"told a nominal pose that is no rigid motion, written row by row with the last row 0 0 0 1",
+     "meldet eine Stellung, die keine starre Bewegung ist, zeilenweise geschrieben, mit der letzten Zeile 0 "
+     "0 0 1"},
     {"sent a profile without samples", "sendet ein Profil ohne Messpunkte"},
     {"sent pixels of a format that has no place here",
      "sendet Pixel in einem Format, das hier nicht vorgesehen ist"},

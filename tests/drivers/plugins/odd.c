@@ -175,6 +175,8 @@ static int32_t scan(dubsar_device* device, const dubsar_sink* sink, dubsar_error
   info.tablet_from_scanner[0] = info.tablet_from_scanner[5] = cos(device->turntable_rad);
   info.tablet_from_scanner[1] = -(info.tablet_from_scanner[4] = sin(device->turntable_rad));
   info.tablet_from_scanner[10] = info.tablet_from_scanner[15] = 1;
+  /* A shift along x, written row by row, or column by column as others have it. */
+  info.tablet_from_scanner[strcmp(device->mode, "columns") == 0 ? 12 : 3] = 5;
   info.source = "odd scan";
   info.device_id = "odd 0815";
   if (strcmp(device->mode, "late") == 0) {
