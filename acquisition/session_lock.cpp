@@ -66,7 +66,8 @@ std::unexpected<Error> held(int fd, const fs::path& folder) {
       has_other_names(fd) ? "another program is writing to this session, or to one that shares its files "
                             "through hard links"
                           : "another program is writing to this session";
-  return fail(ErrorKind::kUsage, what + (who.empty() ? std::string() : " (process " + who + ")"),
+  // It goes away by itself: to do it again is of use, as with a package that another is making.
+  return fail(ErrorKind::kStorage, what + (who.empty() ? std::string() : " (process " + who + ")"),
               folder.string(), "close it first, or open the session for reading only");
 }
 

@@ -15,7 +15,7 @@ namespace dubsar::session {
 /// program puts a lock of its own in place, and what it locks is one session again.
 class FolderLock {
  public:
-  /// kUsage with the process number when another program (or another store of this one) has it. kBadInput
+  /// kStorage with the process number when another program (or another store of this one) has it. kBadInput
   /// where a symbolic link, or what is no file, lies in place of the lock.
   [[nodiscard]] static Result<FolderLock> take(const std::filesystem::path& folder);
   FolderLock(FolderLock&& other) noexcept;

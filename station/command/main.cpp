@@ -74,7 +74,7 @@ int run(int argc, char** argv) {
   app.get_formatter()->label("SUBCOMMAND", "VERB");
   app.footer(
       "Exit status: 0 done, 1 done but it falls short, 2 bad usage or input, 3 a device failed, 4 the disk "
-      "refused or an internal error. Every verb has a --help of its own.");
+      "refused, another program is writing there, or an internal error. Every verb has a --help of its own.");
   bool json = false;
   bool verbose = false;
   bool quiet = false;

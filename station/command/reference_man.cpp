@@ -106,7 +106,7 @@ bad usage or bad input
 a device failed
 .TP
 .B 4
-internal error, or the disk refused; nothing that was stored is lost
+internal error, the disk refused, or another program is writing there; nothing that was stored is lost
 .PP
 An error is one line on standard error: where, what, and the mend.
 .SH ENVIRONMENT

@@ -83,7 +83,7 @@ TEST_F(HardLinks, OfTwoProgramsTheSecondIsToldAsLongAsTheFirstWrites) {
     link_all();
     const auto second = SessionStore::open(copy_);
     ASSERT_FALSE(second);
-    EXPECT_EQ(second.error().kind, ErrorKind::kUsage);
+    EXPECT_EQ(second.error().kind, ErrorKind::kStorage);
     EXPECT_THAT(second.error().line(), HasSubstr("shares its files through hard links (process "));
     EXPECT_TRUE(first.add_grid(test::small_grid(4)));
   }

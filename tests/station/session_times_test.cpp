@@ -117,7 +117,7 @@ TEST(SessionTimes, TheSecondProgramIsToldWhoHasTheSession) {
       EXPECT_EQ(second.status, 0) << "it only reads where there is nothing to mend: " << second.err;
       continue;
     }
-    EXPECT_EQ(second.status, 2) << second.err;
+    EXPECT_EQ(second.status, 4) << "to be tried again: " << second.err;
     ASSERT_EQ(second.complaints().size(), 1U) << second.err;
     EXPECT_THAT(second.complaints()[0], HasSubstr("another program is writing to this session (process "));
   }
