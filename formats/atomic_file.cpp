@@ -3,6 +3,7 @@
 #include "formats/atomic_file.h"
 
 #include <fcntl.h>
+#include <poll.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -63,6 +64,15 @@ std::unexpected<Error> storage_error(const std::filesystem::path& path, const ch
   return refused(path, doing, error, otherwise);
 }
 
+/// Of a pipe that is full: until somebody reads from it, or a signal wants the program to stop. A wait for
+/// room is never taken up again after a signal, as a write may be: who does not read would keep the program.
+Status wait_for_room(int fd, const std::filesystem::path& path) {
+  pollfd room{fd, POLLOUT, 0};
+  return ::poll(&room, 1, -1) < 0 && errno == EINTR
+             ? fail(ErrorKind::kCancelled, "writing was stopped", path.string())
+             : Status();
+}
+
 Status write_all(int fd, const std::filesystem::path& path, std::span<const std::byte> bytes) {
   while (!bytes.empty()) {
     // Linux writes at most 2 GiB at a time.
@@ -71,15 +81,26 @@ Status write_all(int fd, const std::filesystem::path& path, std::span<const std:
       if (errno == EINTR) {
         continue;
       }
-      return storage_error(path, "cannot write", errno);
+      if (errno != EAGAIN) {
+        return storage_error(path, "cannot write", errno);
+      }
+      if (const Status room = wait_for_room(fd, path); !room) {
+        return room;
+      }
+      continue;
     }
     bytes = bytes.subspan(static_cast<std::size_t>(written));
   }
   return {};
 }
 
+/// Nothing waits in here but wait_for_room(): not the opening of a pipe, for somebody who reads from it.
 Status write_to_device(const std::filesystem::path& path, const ByteProducer& produce) {
-  Descriptor file(::open(path.c_str(), O_WRONLY | O_CLOEXEC));
+  Descriptor file(::open(path.c_str(), O_WRONLY | O_CLOEXEC | O_NONBLOCK));
+  if (file.get() < 0 && errno == ENXIO) {
+    return fail(ErrorKind::kUsage, "cannot write: a pipe that nobody reads from, or a socket", path.string(),
+                "start what reads it first, or name a file");
+  }
   if (file.get() < 0) {
     return storage_error(path, "cannot open", errno);
   }

@@ -25,7 +25,7 @@ inline constexpr std::string_view kTemporaryPrefix = ".dubsar-tmp-";
 
 /// Replaces `path` by the bytes, or leaves it as it was: writes a temporary file beside it, syncs it, renames
 /// it and syncs the folder. After success the file survives a power loss. On failure (ErrorKind::kStorage) no
-/// temporary file stays behind. A device or pipe at `path` is written to directly.
+/// temporary file stays behind. A device or pipe at `path` is written to directly; kUsage: nobody reads it.
 [[nodiscard]] Status write_file_atomically(const std::filesystem::path& path,
                                            std::span<const std::byte> bytes);
 [[nodiscard]] Status write_file_atomically(const std::filesystem::path& path, std::string_view text);

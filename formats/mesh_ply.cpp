@@ -5,9 +5,11 @@
 #include <atomic>
 #include <cmath>
 
+#include "core/log.h"
 #include "core/number_text.h"
 #include "core/parallel.h"
 #include "formats/byte_order.h"
+#include "formats/bytes_left_over.h"
 #include "formats/colour_values.h"
 #include "formats/mesh_formats.h"
 #include "formats/ply_body.h"
@@ -331,6 +333,9 @@ Result<Mesh> decode_mesh_ply(std::string_view bytes, const std::string& where,
   }
   if (options.passed_over != nullptr) {
     *options.passed_over = passed_over_of_mesh(*header);
+  }
+  if (const std::string left_over = bytes_left_over(body.rest()); !left_over.empty()) {
+    log_warning(Error{ErrorKind::kBadInput, left_over, where, {}}.line());
   }
   if (has_texture_places(*vertex) && !mesh.faces.empty()) {
     weld_equal_positions(mesh);

@@ -5,7 +5,9 @@
 #include <array>
 #include <vector>
 
+#include "core/log.h"
 #include "formats/byte_order.h"
+#include "formats/bytes_left_over.h"
 #include "formats/mesh_formats.h"
 #include "formats/text_scanner.h"
 
@@ -152,6 +154,10 @@ Result<Mesh> decode_binary(std::string_view bytes, const std::string& where, dou
     }
     const auto last = static_cast<std::uint32_t>(mesh.positions.size());
     mesh.faces.push_back({last - 3, last - 2, last - 1});
+  }
+  const std::string_view rest = bytes.substr(kHeaderBytes + 4 + std::size_t{count} * kFacetBytes);
+  if (const std::string left_over = bytes_left_over(rest); !left_over.empty()) {
+    log_warning(Error{ErrorKind::kBadInput, left_over, where, {}}.line());
   }
   return mesh;
 }

@@ -95,6 +95,8 @@ class PlyBody {
     return format_ == PlyFormat::kBigEndian ? std::endian::big : std::endian::little;
   }
   void pass(std::string_view read) { at_ += read.size(); }
+  /// What was not read or skipped.
+  [[nodiscard]] std::string_view rest() const { return file_.substr(file_.size() - remaining()); }
 
   /// An error at an instance of the element that was just read: "vertex 12 (line 34): what".
   [[nodiscard]] std::unexpected<Error> error_at(const PlyElement& element, std::uint64_t index,

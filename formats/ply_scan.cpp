@@ -10,6 +10,7 @@
 
 #include "core/number_text.h"
 #include "core/units.h"
+#include "formats/bytes_left_over.h"
 #include "formats/colour_values.h"
 #include "formats/place_precision.h"
 #include "formats/ply_body.h"
@@ -315,6 +316,7 @@ Result<ScanData> read_ply_scan(std::string_view bytes, const std::string& name,
     }
   }
 
+  const std::string left_over = bytes_left_over(body.rest());
   if (const Status near = samples.check_place(name); !near) {
     return std::unexpected(near.error());
   }
@@ -325,6 +327,9 @@ Result<ScanData> read_ply_scan(std::string_view bytes, const std::string& name,
     cloud.source = file_name_of(name);
     if (cloud.points.empty()) {
       return bad_input(name, "holds no usable point", kExportAgain);
+    }
+    if (!left_over.empty() && options.remark) {
+      options.remark(cloud.source, left_over);
     }
     return cloud;
   }
@@ -346,7 +351,7 @@ Result<ScanData> read_ply_scan(std::string_view bytes, const std::string& name,
   if (const Status precise = check_precision(grid, name); !precise) {
     return std::unexpected(precise.error());
   }
-  for (const std::string& remark : {spacing, direction}) {
+  for (const std::string& remark : {left_over, spacing, direction}) {
     if (!remark.empty() && options.remark) {
       options.remark(grid.source, remark);
     }

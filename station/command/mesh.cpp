@@ -51,8 +51,10 @@ Result<Mesh> read(const MeshOptions& options, const CommandContext& context,
 }
 
 /// With what the file that was read says of itself, and a word on what the new one cannot hold.
-Status write(const MeshOptions& options, const Mesh& mesh, const std::vector<std::string>& passed_over) {
-  if (const Status written = write_mesh(options.out, mesh, read_mesh_label(options.in)); !written) {
+Status write(const MeshOptions& options, const CommandContext& context, const Mesh& mesh,
+             const std::vector<std::string>& passed_over) {
+  if (const Status written = write_mesh(options.out, mesh, read_mesh_label(options.in), &context.job);
+      !written) {
     return written;
   }
   if (const std::optional<Error> lost = mesh_losses(mesh, options.out, "keep " + options.in, passed_over)) {
@@ -102,7 +104,7 @@ Result<int> convert(const MeshOptions& options, CommandContext& context) {
     }
     log_warning(fault->line());
   }
-  if (const Status written = write(options, *mesh, passed_over); !written) {
+  if (const Status written = write(options, context, *mesh, passed_over); !written) {
     return std::unexpected(written.error());
   }
   const LeftOut out = left_out_of(*mesh, options.out);
@@ -205,7 +207,7 @@ Result<int> part(const MeshOptions& options, CommandContext& context) {
     return wedges.empty() ? 1 : 0;
   }
   const Mesh out = part_of(*mesh, *selection);
-  if (const Status written = write(options, out, passed_over); !written) {
+  if (const Status written = write(options, context, out, passed_over); !written) {
     return std::unexpected(written.error());
   }
   if (context.json) {

@@ -2,11 +2,17 @@
 // Copyright The Dubsar developers
 #include "formats/atomic_file.h"
 
+#include <fcntl.h>
 #include <sys/resource.h>
+#include <sys/socket.h>
 #include <sys/stat.h>
+#include <sys/time.h>
+#include <sys/un.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <csignal>
+#include <thread>
 
 #include "tests/formats/format_support.h"
 
@@ -87,6 +93,65 @@ TEST(AtomicFile, SaysWhenTheDeviceIsFullAndLeavesItADevice) {
   EXPECT_EQ(status.error().kind, ErrorKind::kStorage);
   EXPECT_THAT(line_of(status), HasSubstr("No space left on device; free some space"));
   EXPECT_TRUE(std::filesystem::is_character_file("/dev/full"));
+}
+
+/// Opening it would wait for a reader, whatever signal comes.
+TEST(AtomicFile, APipeThatNobodyReadsIsRefusedAndASocketToo) {
+  const ScratchFolder folder;
+  ASSERT_EQ(::mkfifo((folder / "pipe").c_str(), 0600), 0);
+  const int listener = ::socket(AF_UNIX, SOCK_STREAM, 0);
+  sockaddr_un address{};
+  address.sun_family = AF_UNIX;
+  const std::string name = (folder / "socket").string();
+  ASSERT_LT(name.size(), sizeof address.sun_path);
+  name.copy(address.sun_path, name.size());
+  ASSERT_EQ(::bind(listener, reinterpret_cast<const sockaddr*>(&address), sizeof address), 0);
+  for (const char* file : {"pipe", "socket"}) {
+    const Status status = write_file_atomically(folder / file, "some bytes");
+    ASSERT_FALSE(status) << file;
+    EXPECT_EQ(status.error().kind, ErrorKind::kUsage);
+    EXPECT_THAT(line_of(status),
+                HasSubstr("cannot write: a pipe that nobody reads from, or a socket; start"));
+  }
+  ::close(listener);
+}
+
+TEST(AtomicFile, APipeThatIsReadGetsAllHoweverSlowly) {
+  const ScratchFolder folder;
+  ASSERT_EQ(::mkfifo((folder / "pipe").c_str(), 0600), 0);
+  const int reader = ::open((folder / "pipe").c_str(), O_RDONLY | O_NONBLOCK);
+  ASSERT_GE(reader, 0);
+  const std::string big(1000000, 'x');  // more than a pipe holds
+  std::size_t got = 0;
+  std::thread slow([&] {
+    std::string some(4096, ' ');
+    while (got < big.size()) {
+      const ssize_t read = ::read(reader, some.data(), some.size());
+      got += static_cast<std::size_t>(std::max<ssize_t>(read, 0));
+    }
+  });
+  const Status status = write_file_atomically(folder / "pipe", big);
+  slow.join();
+  EXPECT_TRUE(status) << line_of(status);
+  EXPECT_EQ(got, big.size());
+  ::close(reader);
+}
+
+TEST(AtomicFile, ASignalEndsTheWaitForWhoDoesNotRead) {
+  const ScratchFolder folder;
+  ASSERT_EQ(::mkfifo((folder / "pipe").c_str(), 0600), 0);
+  const int reader = ::open((folder / "pipe").c_str(), O_RDONLY | O_NONBLOCK);
+  ASSERT_GE(reader, 0);
+  const auto before = std::signal(SIGALRM, [](int) {});  // as the command does: calls go on after it
+  const itimerval again{{0, 10000}, {0, 10000}};
+  ::setitimer(ITIMER_REAL, &again, nullptr);
+  const Status status = write_file_atomically(folder / "pipe", std::string(1000000, 'x'));
+  const itimerval never{};
+  ::setitimer(ITIMER_REAL, &never, nullptr);
+  std::signal(SIGALRM, before);
+  ASSERT_FALSE(status);
+  EXPECT_EQ(status.error().kind, ErrorKind::kCancelled);
+  ::close(reader);
 }
 
 TEST(AtomicFile, RefusesAReadOnlyFolder) {

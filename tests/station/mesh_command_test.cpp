@@ -2,11 +2,19 @@
 // Copyright The Dubsar developers
 // dubsar mesh: what it says to meshes that are inside out or have no faces, and to cuts that meet nothing.
 
+#include <fcntl.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <poll.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
+#include <chrono>
 #include <cmath>
+#include <csignal>
+#include <cstdint>
 #include <fstream>
+#include <thread>
 #include <utility>
 
 #include "formats/mesh_io.h"
@@ -74,6 +82,41 @@ TEST_F(MeshCommand, OfAMeshThatIsInsideOutTheNearSideIsCutAndAnalysed) {
   EXPECT_EQ(analysed.status, 0) << analysed.err;
   EXPECT_THAT(analysed.err, HasSubstr("turned over"));
   EXPECT_EQ(run_command({"mesh", "check", at("out.ply"), "--json"}).json()["inside_out"], false);
+}
+
+TEST_F(MeshCommand, APipeThatNobodyReadsIsRefusedAtOnce) {
+  ASSERT_EQ(::mkfifo(at("out.ply").c_str(), 0600), 0);
+  const Outcome refused = run_command({"mesh", "convert", at("tent.obj"), at("out.ply")});
+  EXPECT_EQ(refused.status, 2) << refused.err;
+  EXPECT_THAT(refused.complaints(),
+              ElementsAre(HasSubstr("out.ply: cannot write: a pipe that nobody reads from")));
+}
+
+TEST_F(MeshCommand, SigtermEndsItThoughWhoReadsThePipeDoesNot) {
+  Mesh large;
+  constexpr std::uint32_t kSide = 100;  // as text more than a pipe holds
+  for (std::uint32_t v = 0; v < kSide * kSide; ++v) {
+    large.positions.emplace_back(static_cast<float>(v % kSide), static_cast<float>(v / kSide), 0.0F);
+    if (v % kSide > 0 && v / kSide > 0) {
+      large.faces.push_back({v, v - 1, v - kSide});
+    }
+  }
+  ASSERT_TRUE(write_mesh(at("large.ply"), large));
+  ASSERT_EQ(::mkfifo(at("out.obj").c_str(), 0600), 0);
+  const int reader = ::open(at("out.obj").c_str(), O_RDONLY | O_NONBLOCK);
+  ASSERT_GE(reader, 0);
+  test::RunningCommand running({"mesh", "convert", at("large.ply"), at("out.obj")});
+  pollfd begun{reader, POLLIN, 0};
+  ASSERT_EQ(::poll(&begun, 1, 240000), 1);
+  for (int again = 0; again < 3; ++again) {  // one may come just before it waits
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    running.send(SIGTERM);
+  }
+  const Outcome stopped = running.wait();
+  EXPECT_FALSE(stopped.timed_out);
+  EXPECT_EQ(stopped.status, 1) << stopped.err;
+  EXPECT_THAT(stopped.complaints(), ElementsAre(HasSubstr("out.obj: writing was stopped"))) << stopped.err;
+  ::close(reader);
 }
 
 TEST_F(MeshCommand, WhatAFormatCannotHoldIsToldAndNotMadeUpAfterwards) {

@@ -9,6 +9,8 @@ namespace {
 
 constexpr EnginePhrase kRemarks[] = {
     // what the reading of a scan remarks
+    {" bytes follow what the header tells of and are passed over; export it again if something is missing",
+     " Bytes folgen auf das, was der Kopf angibt, und werden übergangen; neu ausgeben, wenn etwas fehlt"},
     {"its header says a spacing of ", "sein Kopf nennt einen Punktabstand von "},
     {" mm, but its samples lie ", " mm, aber seine Messpunkte liegen "},
     {" mm, but neighbours in its rows lie ", " mm, aber Nachbarn in seinen Zeilen liegen "},
