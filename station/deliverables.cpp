@@ -2,6 +2,7 @@
 // Copyright The Dubsar developers
 #include "station/deliverables.h"
 
+#include "archive/behind_page.h"
 #include "archive/png.h"
 #include "archive/report_pictures.h"
 #include "formats/atomic_file.h"
@@ -10,13 +11,16 @@
 #include "formats/poses_json.h"
 #include "formats/red_map_json.h"
 #include "station/picture_file.h"
+#include "station/session_pages.h"
 
 namespace dubsar {
 
 namespace fs = std::filesystem;
 
-Result<Deliverables> write_deliverables(SessionStore& store, const ReportInput& input, const FileLabel& label,
-                                        JobContext& job) {
+namespace {
+
+Result<Deliverables> write_all(SessionStore& store, const ReportInput& input, const FileLabel& label,
+                               bool with_mesh, JobContext& job) {
   Deliverables files;
   for (const char* name : {"mesh", "export"}) {
     if (const Status made = make_folder(store.folder() / name); !made) {
@@ -44,13 +48,27 @@ Result<Deliverables> write_deliverables(SessionStore& store, const ReportInput& 
     return std::unexpected(report.error());
   }
   job.progress("writing results", 0.5);
-  if (!input.model.faces.empty()) {
+  if (with_mesh && !input.model.faces.empty()) {
     const auto write = [&](const fs::path& file) { return write_mesh(file, input.model, label); };
     if (Status s = keep("mesh/model.ply", files.mesh, write); !s) {
       return std::unexpected(s.error());
     }
   }
-  if (!pictures->empty) {
+  if (pictures->empty) {
+    // Those of an earlier surface must not stay beside it.
+    const Image none = behind_picture(
+        {input.title, {}, input.when, "no surface was meshed", "run dubsar plan once a scan is registered"});
+    for (const char* name : {"export/six_views.png", "export/red_map.png"}) {
+      std::error_code unknown;
+      const auto draw = [&](const fs::path& file) {
+        return write_picture(file, none, picture_words(label, input.title));
+      };
+      fs::path unused;
+      if (Status s = fs::exists(store.folder() / name, unknown) ? keep(name, unused, draw) : Status(); !s) {
+        return std::unexpected(s.error());
+      }
+    }
+  } else {
     const auto writer = [&](const auto& sheet, const char* what) {
       return [&label, &input, &sheet, what](const fs::path& file) {
         return write_picture(file, sheet, picture_words(label, input.title + ", " + what));
@@ -78,6 +96,18 @@ Result<Deliverables> write_deliverables(SessionStore& store, const ReportInput& 
   }
   job.progress("writing results", 1.0);
   return files;
+}
+
+}  // namespace
+
+Result<Deliverables> write_deliverables(SessionStore& store, const ReportInput& input, const FileLabel& label,
+                                        JobContext& job) {
+  return write_all(store, input, label, true, job);
+}
+
+Status write_pages(SessionStore& store, const ReportInput& input, const FileLabel& label, JobContext& job) {
+  const Result<Deliverables> files = write_all(store, input, label, false, job);
+  return files ? Status() : std::unexpected(files.error());
 }
 
 }  // namespace dubsar

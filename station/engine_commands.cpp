@@ -4,6 +4,7 @@
 // session that goes on later stands where the operator left it.
 #include "station/engine_impl.h"
 #include "station/followed_word.h"
+#include "station/session_pages.h"
 
 namespace dubsar {
 
@@ -273,6 +274,9 @@ void Engine::Impl::obey_commands(JobContext& job) {
       const Status kept = keep_tablet_record(*store, describe->record);
       emit(Notice{kept ? "what is said of the tablet is kept" : kept.error().line()});
       continue;
+    }
+    if (const Status taken = take_pages_back_once(*store, "something was said of its scans", kPlan); !taken) {
+      emit(Notice{taken.error().line()});
     }
     std::string what;
     Result<std::vector<StationScan>> obeyed = obey(command, what, job);

@@ -7,6 +7,7 @@
 
 #include "core/scan_list.h"
 #include "station/engine_impl.h"
+#include "station/session_pages.h"
 
 namespace dubsar {
 
@@ -43,6 +44,11 @@ ScanPose Engine::Impl::set_intruders_aside(const StationScan& scan, ScanPose pos
     const std::string why = fmt::format(
         "something was in the way of scan {}: {:.0f} % of it, where scan {} looked too, stands in the air",
         found->id, 100 * found->share, found->witness);
+    if (const Status taken =
+            take_pages_back_once(*store, fmt::format("scan {} was taken out", found->id), kPlan);
+        !taken) {
+      emit(Notice{taken.error().line()});
+    }
     if (const Status dropped = store->drop_scan(found->id, why); !dropped) {
       give_up(dropped.error());
       break;

@@ -5,6 +5,7 @@
 #include "formats/grid_header.h"
 #include "station/engine_impl.h"
 #include "station/pin_faults.h"
+#include "station/session_pages.h"
 #include "station/told_session.h"
 
 namespace dubsar {
@@ -93,6 +94,9 @@ Status Engine::Impl::store_left_rows(const RangeGrid& rows, const LeftScan& left
   // A program may also end between the storing of a scan and the end of its copy here.
   if (rows.valid_count() == 0 || is_among_newest(rows, left.parts.size())) {
     return {};
+  }
+  if (const Status taken = take_pages_back_once(*store, "a scan has come", kPlan); !taken) {
+    emit(Notice{taken.error().line()});
   }
   const Result<int> id = store->add_grid(rows, left.remark);
   if (!id) {

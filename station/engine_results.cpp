@@ -2,6 +2,7 @@
 // Copyright The Dubsar developers
 #include "station/engine_impl.h"
 #include "station/results.h"
+#include "station/session_pages.h"
 #include "station/session_wedges.h"
 
 namespace dubsar {
@@ -56,9 +57,10 @@ Status Engine::Impl::finish(EngineResult& result, JobContext& job) {
   if (const Status s = keep_page_facts(*store, facts); !s) {
     return s;
   }
-  if (const Status s = keep_verdict(*store, result.red_map, result.checklist); !s) {
+  if (const Status s = keep_verdict(*store, results, job); !s) {
     return s;
   }
+  result.checklist = results.checklist;
   Result<Deliverables> files = keep_deliverables(*store, report_input(results, planning, facts), job);
   if (!files) {
     return std::unexpected(files.error());

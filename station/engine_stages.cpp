@@ -3,6 +3,7 @@
 #include "core/number_text.h"
 #include "station/engine_impl.h"
 #include "station/followed_word.h"
+#include "station/session_pages.h"
 
 namespace dubsar {
 
@@ -205,6 +206,9 @@ void Engine::Impl::acquire(NextStep step, JobContext& job) {
 bool Engine::Impl::store_scan(int id, const RangeGrid& grid, const std::optional<Placement>& drive,
                               const std::string& remark) {
   const StageClock timing = clock("storing");
+  if (const Status taken = take_pages_back_once(*store, fmt::format("scan {} has come", id), kPlan); !taken) {
+    emit(Notice{taken.error().line()});
+  }
   const Result<int> stored = store->add_grid(grid, remark);
   if (!stored) {
     give_up(stored.error());
@@ -224,13 +228,6 @@ bool Engine::Impl::store_scan(int id, const RangeGrid& grid, const std::optional
   }
   keep_origin();
   return true;
-}
-
-void Engine::Impl::note_drive(int id, const Placement& drive) {
-  drives_of_scans[id] = drive;
-  if (const Status saved = store->save_document("drives", drives_to_json(drives_of_scans)); !saved) {
-    give_up(saved.error());
-  }
 }
 
 /// Each scan goes to registration while it is being stored; what registration finds of it waits until it is

@@ -8,7 +8,9 @@
 #include <optional>
 #include <set>
 
+#include "formats/poses_json.h"
 #include "registration/point_pairs.h"
+#include "station/session_pages.h"
 
 namespace dubsar {
 
@@ -144,6 +146,12 @@ Said as_poses_have_it(const ScanSet& set, const std::vector<ScanPose>& poses, in
 
 Status save_followed_poses(SessionStore& store, const std::vector<ScanPose>& poses,
                            const std::vector<int>& only) {
+  const Result<std::vector<ScanPose>> before = store.poses();
+  if (!before || poses_to_json(*before) != poses_to_json(poses)) {
+    if (Status taken = take_pages_back_once(store, "the scans were registered anew", kPlan); !taken) {
+      return taken;
+    }
+  }
   if (const Status saved = store.save_poses(poses); !saved) {
     return saved;
   }

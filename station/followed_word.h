@@ -16,7 +16,8 @@ namespace dubsar {
 // back again leaves nothing to follow.
 
 /// Saves poses for which all that was said was heeded, or with `only` what was said of those scans, and notes
-/// it in the record: the first time, and where something was said since. Errors: the store's.
+/// it in the record: the first time, and where something was said since. Pages that show other places are
+/// taken back first (session_pages.h). Errors: the store's.
 Status save_followed_poses(SessionStore& store, const std::vector<ScanPose>& poses,
                            const std::vector<int>& only = {});
 

@@ -8,6 +8,7 @@
 #include "station/live_session.h"
 #include "station/offline.h"
 #include "station/plan_again.h"
+#include "station/session_pages.h"
 
 namespace dubsar {
 
@@ -48,8 +49,11 @@ Status LiveSession::judge_stored() {
   if (const Status saved = stands ? Status() : save_followed_poses(store, results.poses); !saved) {
     return saved;
   }
-  if (const Status kept = keep_verdict(store, results.red_map, results.checklist); !kept) {
+  if (const Status kept = keep_verdict(store, results, *job_); !kept) {
     return kept;
+  }
+  if (const Result<bool> pages = keep_pages_anew(store, *planned, *job_); !pages) {
+    return std::unexpected(pages.error());
   }
   if (!results.mesh.faces.empty()) {
     const auto mesh = std::make_shared<const Mesh>(results.mesh);

@@ -7,6 +7,7 @@
 #include "station/plan_again.h"
 #include "station/results.h"
 #include "station/scan_set.h"
+#include "station/session_pages.h"
 #include "station/session_wedges.h"
 
 namespace dubsar {
@@ -14,6 +15,8 @@ namespace dubsar {
 namespace fs = std::filesystem;
 
 namespace {
+
+constexpr const char* kMended = "it was mended";
 
 bool any_below(const std::vector<std::string>& names, const std::string& folder) {
   return std::ranges::any_of(names, [&](const std::string& name) { return name.starts_with(folder + "/"); });
@@ -30,11 +33,17 @@ Status make_derived_anew(const fs::path& session, const std::vector<std::string>
     return std::unexpected(planned.error());
   }
   const PageFacts facts = page_facts_of(*set->store);
+  const bool were_taken_back = pages_are_taken_back(*set->store);
   if (any_below(lost, "mesh") || any_below(lost, "export")) {
     const Result<Deliverables> kept =
         keep_deliverables(*set->store, report_input(planned->results, *planned->stage, facts), job);
     if (!kept) {
       return std::unexpected(kept.error());
+    }
+    // The poses may not follow yet what was said of the scans: plan sees to that.
+    if (Status taken = were_taken_back ? take_pages_back(*set->store, kMended, kFollowAndPlan) : Status();
+        !taken) {
+      return taken;
     }
   }
   if (any_below(lost, "analysis")) {
@@ -101,6 +110,15 @@ Result<Mended> mend_session(const fs::path& session, const VerifyReport& found,
       return std::unexpected(made.error());
     } else {
       out.beyond.push_back(made.error());
+    }
+  }
+  if (lost_scan.empty() && !(out.records.empty() && out.notes.empty())) {
+    // What came back, or is lost of the record, may have been said of scans or places that the pages show.
+    Result<SessionStore> store = SessionStore::open(session);
+    const bool behind = store && !why_pages_are_behind(*store).empty();
+    if (const Status taken = behind ? take_pages_back_once(*store, kMended, kFollowAndPlan) : Status();
+        !taken) {
+      out.beyond.push_back(taken.error());
     }
   }
   const Result<SessionStore> after = SessionStore::open(session, SessionStore::Access::kReadOnly);

@@ -180,6 +180,13 @@ std::string name_of(const std::string& file) {
   return std::filesystem::path(file).filename().string();
 }
 
+/// That of its file, where it is known by another: a PLY may say how its scan was called. Empty for one of
+/// several scans of a file ("tablet.ptx#2").
+std::string own_name_of(const StationScan& scan) {
+  std::string own = scan.read_from.filename().string();
+  return name_of(scan.file).starts_with(own + "#") ? std::string() : own;
+}
+
 /// Whether a path ends in that one, which is relative.
 bool lies_at(const std::filesystem::path& whole, const std::filesystem::path& end) {
   const auto parts = std::distance(end.begin(), end.end());
@@ -201,6 +208,10 @@ const ScanPose* pose_in_file(const std::vector<ScanPose>& file, const StationSca
   if (found == nullptr) {
     found = the_one(
         [&](const ScanPose& pose) { return !pose.file.empty() && name_of(pose.file) == name_of(scan.file); });
+  }
+  if (const std::string own = own_name_of(scan); found == nullptr && !own.empty()) {
+    found =
+        the_one([&](const ScanPose& pose) { return pose.packed_as.empty() && name_of(pose.file) == own; });
   }
   return found != nullptr ? found : the_one([&](const ScanPose& pose) {
     // A session may have two scans of one name, and keeps their numbers.
@@ -227,6 +238,13 @@ Result<std::vector<ScanPose>> read_either(const std::filesystem::path& poses_fil
   }
   const Result<double> theirs = mm_per_unit_of_scans(scans, *poses);
   return theirs ? read_conf_poses(poses_file, *theirs) : std::unexpected(theirs.error());
+}
+
+/// Whether a pose that has the name of the scan's file has the original name of another scan.
+bool is_of_another(const ScanPose& pose, const StationScan& scan, const std::vector<StationScan>& scans) {
+  const std::string name = name_of(pose.file);
+  return pose.packed_as.empty() && name != name_of(scan.file) &&
+         std::ranges::any_of(scans, [&](const StationScan& other) { return name_of(other.file) == name; });
 }
 
 /// As who stitches them is told.
@@ -274,7 +292,11 @@ Result<std::vector<ScanPose>> poses_from_file(const ScanSet& set, const std::fil
   }
   std::vector<ScanPose> poses;
   for (const StationScan& scan : set.scans) {
-    if (const ScanPose* found = pose_in_file(*read, scan)) {
+    const ScanPose* found = pose_in_file(*read, scan);
+    if (found != nullptr && !found->file.empty() && is_of_another(*found, scan, set.scans)) {
+      found = nullptr;
+    }
+    if (found != nullptr) {
       const bool counts = found->status == PoseStatus::kRegistered;
       const PlacedPrecision precision(*scan.grid);
       if (const Status near = counts ? precision.check(found->model_from_scanner, scan.file) : Status();

@@ -31,8 +31,8 @@ struct RegisterOptions {
                                                            JobContext& job);
 
 /// The one of a file's poses that is a scan's, or none: by where the scan lies in the package that the poses
-/// are of, else by the scan's original name where no other has that, else by id where the pose has no name
-/// or, of a scan of a session, that name.
+/// are of, else by the scan's original name where no other has that, else by the name of its file, else by id
+/// where the pose has no name or, of a scan of a session, that name.
 [[nodiscard]] const ScanPose* pose_in_file(const std::vector<ScanPose>& file, const StationScan& scan);
 
 [[nodiscard]] std::unexpected<Error> no_pose_of_these(const std::filesystem::path& poses_file);

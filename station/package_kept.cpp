@@ -16,6 +16,7 @@
 #include "station/file_list.h"
 #include "station/lost_scans.h"
 #include "station/package_content.h"
+#include "station/session_pages.h"
 
 namespace dubsar {
 
@@ -92,6 +93,9 @@ Result<std::map<std::string, std::vector<std::string>>> keep_derived(PackageCont
   for (const std::string& name : names) {
     if (!is_derived(name) || is_by_hand(name)) {
       continue;
+    }
+    if (name.starts_with("export/") && pages_are_taken_back(content.store)) {
+      continue;  // it says that the session was changed, and nothing of the scans
     }
     const Result<bool> kept = keep(content, name);
     if (!kept) {

@@ -270,13 +270,6 @@ PageFacts page_facts_of(const SessionStore& store) {
   return facts;
 }
 
-Status keep_verdict(SessionStore& store, const RedMap& red_map, const Checklist& checklist) {
-  if (const Status s = store.save_document("red_map", red_map_to_json(red_map)); !s) {
-    return s;
-  }
-  return store.save_document("checklist", checklist_to_json(checklist));
-}
-
 Result<std::vector<ScanPose>> standing_poses(const SessionStore& store) {
   const auto scans = store.scans();
   if (!scans) {

@@ -62,7 +62,7 @@ struct PageFacts {
 [[nodiscard]] Status keep_page_facts(SessionStore& store, const PageFacts& facts);
 [[nodiscard]] PageFacts page_facts_of(const SessionStore& store);
 
-/// Red map and checklist into the session's documents.
+/// Red map and checklist into the session's documents; pages of another red map are taken back before that.
 [[nodiscard]] Status keep_verdict(SessionStore& store, const RedMap& red_map, const Checklist& checklist);
 
 /// The poses of the scans that stand: neither taken out nor damaged.

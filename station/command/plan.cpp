@@ -23,6 +23,7 @@
 #include "station/offline.h"
 #include "station/plan_again.h"
 #include "station/session_name.h"
+#include "station/session_pages.h"
 #include "station/sign_off_words.h"
 #include "station/tablet_flags.h"
 
@@ -42,7 +43,8 @@ struct PlanArguments {
 struct Comparison {
   bool compared = false;
   std::vector<std::string> differs;
-  bool kept = false;  ///< the stored one, since its signature holds or the session cannot be written to
+  bool kept = false;      ///< the stored one, since its signature holds or the session cannot be written to
+  bool made_new = false;  ///< what was worked out is kept now
 };
 
 std::string joined(const std::vector<std::string>& parts) {
@@ -55,8 +57,8 @@ std::string joined(const std::vector<std::string>& parts) {
 
 /// Compares with what is stored, and stores what is new, the poses that the verdict rests on with it. A red
 /// map that was signed is never replaced.
-Result<Comparison> compare_and_keep(SessionStore& store, const Results& results, bool poses_are_new,
-                                    bool may_write) {
+Result<Comparison> compare_and_keep(SessionStore& store, Results& results, bool poses_are_new, bool may_write,
+                                    const JobContext& job) {
   const auto differs = differs_from_stored(store, results.red_map);
   Comparison out;
   if (differs && *differs) {
@@ -85,13 +87,60 @@ Result<Comparison> compare_and_keep(SessionStore& store, const Results& results,
   if (const Status saved = poses_are_new ? save_followed_poses(store, results.poses) : Status(); !saved) {
     return std::unexpected(saved.error());
   }
-  if (const Status kept = keep_verdict(store, results.red_map, results.checklist); !kept) {
+  if (const Status kept = keep_verdict(store, results, job); !kept) {
     return std::unexpected(kept.error());
   }
+  out.made_new = true;
   const Status noted = store.append_event(
       "planned",
       nlohmann::ordered_json{{"conclusive", results.red_map.conclusive}, {"differed", out.differs}}.dump());
   return noted ? Result<Comparison>(std::move(out)) : std::unexpected(noted.error());
+}
+
+/// Whether the session keeps what was worked out, and how its pages came to it.
+struct Keeping {
+  std::string not_followed;  ///< as not_followed_sentence() has it
+  std::string behind;        ///< why its pages were behind when it was read; empty where they were not
+  bool may_write = true;
+};
+
+/// No page of the session may say what is not so: they are made anew where the verdict is, or where they were
+/// behind; while the poses do not follow what was said of the scans they are taken back.
+Status follow_with_pages(SessionStore& store, const PlannedAgain& planned, const Comparison& comparison,
+                         const Keeping& is, JobContext& job) {
+  if (!comparison.made_new && is.behind.empty() && is.not_followed.empty()) {
+    return {};
+  }
+  if (is.may_write && !is.not_followed.empty()) {
+    return take_pages_back_once(store, is.not_followed, kFollowAndPlan);
+  }
+  if (!is.may_write || comparison.kept) {
+    if (!is.behind.empty()) {
+      log_warning(store.folder().string() + ": its pages stay behind");
+    }
+    return {};
+  }
+  const Result<bool> written = keep_pages_anew(store, planned, job);
+  if (written && !*written) {
+    log_warning(store.folder().string() + ": its pages stay behind, for scans of it are lost");
+  }
+  return written ? Status() : std::unexpected(written.error());
+}
+
+Result<Comparison> keep_in_session(ScanSet& set, PlannedAgain& planned, Keeping is, JobContext& job) {
+  SessionStore& store = *set.store;
+  is.behind = why_pages_are_behind(store);
+  if (!is.behind.empty()) {
+    const std::string told = store.folder().string() + ": its pages are behind: " + is.behind;
+    pages_are_taken_back(store) ? log_info(told) : log_warning(told);
+  }
+  Result<Comparison> comparison =
+      compare_and_keep(store, planned.results, !all_judged(set), is.may_write, job);
+  if (!comparison) {
+    return comparison;
+  }
+  const Status followed = follow_with_pages(store, planned, *comparison, is, job);
+  return followed ? std::move(comparison) : std::unexpected(followed.error());
 }
 
 Status write_states(const fs::path& folder, const ScanSet& set, const PlannedAgain& planned) {
@@ -214,23 +263,25 @@ Result<int> plan(const PlanArguments& arguments, CommandContext& context) {
   if (!left_out) {
     return std::unexpected(left_out.error());
   }
-  const Result<PlannedAgain> planned = plan_again(*set, *poses, context.job);
+  Result<PlannedAgain> planned = plan_again(*set, *poses, context.job);
   if (!planned) {
     return std::unexpected(planned.error());
   }
   for (const ForeignFound& found : planned->stage->foreign()) {
     log_warning(sentence_of(found));
   }
-  const Results& results = planned->results;
+  Results& results = planned->results;
   log_scan_warnings(results.checklist.warnings);
   Comparison comparison;
-  if (const auto behind = not_followed_sentence(*set);
+  Keeping is{{}, {}, may_write};
+  if (auto behind = not_followed_sentence(*set);
       behind && !behind->empty() && arguments.set.poses.empty() && all_judged(*set)) {
     log_warning(arguments.set.path + ": " + *behind + "; run dubsar register on it");
+    is.not_followed = std::move(*behind);
   }
   // Poses or pins of a file judge alone: the session keeps its own verdict.
   if (set->is_session() && arguments.set.poses.empty() && arguments.set.pins.empty()) {
-    Result<Comparison> compared = compare_and_keep(*set->store, results, !all_judged(*set), may_write);
+    Result<Comparison> compared = keep_in_session(*set, *planned, std::move(is), context.job);
     if (!compared) {
       return std::unexpected(compared.error());
     }

@@ -15,6 +15,7 @@
 #include "formats/sign_off_json.h"
 #include "station/command/option_checks.h"
 #include "station/command/session_verbs.h"
+#include "station/session_pages.h"
 #include "station/sign_off_words.h"
 #include "station/tablet_record.h"
 #include "station/told_session.h"
@@ -120,7 +121,8 @@ struct Change {
   bool made = true;
 };
 
-/// Undo, drop and restore mark scans; the poses and the mesh follow with the next register and stitch.
+/// Undo, drop and restore mark scans; poses, verdict with pages, and mesh follow with the next
+/// register, plan and stitch. Until then the pages say that they are behind.
 template <class Apply>
 Result<int> change(const SessionOptions& options, CommandContext& context, const Apply& apply) {
   Result<SessionStore> store = open_for_a_word(options.path);
@@ -134,8 +136,9 @@ Result<int> change(const SessionOptions& options, CommandContext& context, const
   if (context.json) {
     CommandContext::print({{"session", options.path}, {"scan", change->id}, {"changed", change->made}});
   } else {
-    std::printf("scan %d %s%s\n", change->id, change->is.c_str(),
-                change->made ? "; run register and stitch on the session to follow" : "; nothing changed");
+    std::printf(
+        "scan %d %s%s\n", change->id, change->is.c_str(),
+        change->made ? "; run register, plan and stitch on the session to follow" : "; nothing changed");
   }
   return 0;
 }
@@ -168,7 +171,9 @@ Result<Change> drop(SessionStore& store, int id, const std::string& why) {
     }
     return Change{id, "was taken out before" + reason, false};
   }
-  const Status done = store.drop_scan(id, why);
+  const Status taken =
+      take_pages_back(store, "scan " + std::to_string(id) + " was taken out", kFollowAndPlan);
+  const Status done = taken ? store.drop_scan(id, why) : taken;
   return done ? Result<Change>(Change{id, "is taken out"}) : std::unexpected(done.error());
 }
 
@@ -180,7 +185,8 @@ Result<Change> restore(SessionStore& store, int id) {
   if (!before->dropped) {
     return Change{id, "was not taken out", false};
   }
-  const Status done = store.restore_scan(id);
+  const Status taken = take_pages_back(store, "scan " + std::to_string(id) + " was put back", kFollowAndPlan);
+  const Status done = taken ? store.restore_scan(id) : taken;
   return done ? Result<Change>(Change{id, "is back in its place"}) : std::unexpected(done.error());
 }
 
@@ -241,6 +247,14 @@ void add_describe(CLI::App& session, Action& chosen) {
 }
 
 Result<Change> undo(SessionStore& store) {
+  const auto scans = store.scans();
+  const bool any =
+      !scans || std::ranges::any_of(*scans, [](const StoredScan& scan) { return !scan.dropped; });
+  const Status taken =
+      any ? take_pages_back(store, "the newest scan was taken out", kFollowAndPlan) : Status();
+  if (!taken) {
+    return std::unexpected(taken.error());
+  }
   const auto dropped = store.undo_last_scan();
   if (!dropped) {
     return std::unexpected(dropped.error());

@@ -11,6 +11,7 @@
 #include "station/command/option_checks.h"
 #include "station/command/session_verbs.h"
 #include "station/operator_hint.h"
+#include "station/session_pages.h"
 #include "station/told_session.h"
 
 namespace dubsar {
@@ -28,7 +29,7 @@ struct HintArguments {
   bool withdraw = false;
 };
 
-constexpr const char* kFollow = "run register on the session to follow";
+constexpr const char* kFollow = "run register and plan on the session to follow";
 
 std::string joined(const std::vector<std::string>& words) {
   std::string all;
@@ -36,6 +37,11 @@ std::string joined(const std::vector<std::string>& words) {
     all += all.empty() ? word : " " + word;
   }
   return all;
+}
+
+/// Before it is kept, what was said of the scan.
+Status take_pages_back_for(SessionStore& store, int id, const char* said) {
+  return take_pages_back(store, "scan " + std::to_string(id) + " " + said, kFollowAndPlan);
 }
 
 bool is_file(const std::string& word) {
@@ -142,7 +148,8 @@ Result<int> hint(const HintArguments& arguments, CommandContext& context) {
       return fail(ErrorKind::kUsage, "there is no hint for scan " + std::to_string(arguments.id),
                   arguments.session, "see dubsar session list");
     }
-    if (const Status kept = record_hint_withdrawn(*store, arguments.id); !kept) {
+    const Status taken = take_pages_back_for(*store, arguments.id, "has no hint any more");
+    if (const Status kept = taken ? record_hint_withdrawn(*store, arguments.id) : taken; !kept) {
       return std::unexpected(kept.error());
     }
     return say(context, arguments, "the hint is withdrawn");
@@ -155,7 +162,8 @@ Result<int> hint(const HintArguments& arguments, CommandContext& context) {
   if (!settled) {
     return std::unexpected(settled.error());
   }
-  if (const Status kept = record_hint(*store, arguments.id, *settled); !kept) {
+  const Status taken = take_pages_back_for(*store, arguments.id, "has a hint");
+  if (const Status kept = taken ? record_hint(*store, arguments.id, *settled) : taken; !kept) {
     return std::unexpected(kept.error());
   }
   return say(context, arguments, "the hint on scan " + std::to_string(settled->on) + " is kept",
@@ -171,7 +179,8 @@ Result<int> lock(const HintArguments& arguments, CommandContext& context) {
   if (!lock) {
     return std::unexpected(lock.error());
   }
-  if (const Status kept = record_lock(*store, arguments.id, *lock); !kept) {
+  const Status taken = take_pages_back_for(*store, arguments.id, "is locked");
+  if (const Status kept = taken ? record_lock(*store, arguments.id, *lock) : taken; !kept) {
     return std::unexpected(kept.error());
   }
   return say(context, arguments, "it stays where it is");
@@ -190,7 +199,8 @@ Result<int> unlock(const HintArguments& arguments, CommandContext& context) {
     return fail(ErrorKind::kUsage, "scan " + std::to_string(arguments.id) + " is not locked",
                 arguments.session, "see dubsar session list");
   }
-  if (const Status kept = record_unlock(*store, arguments.id); !kept) {
+  const Status taken = take_pages_back_for(*store, arguments.id, "is unlocked");
+  if (const Status kept = taken ? record_unlock(*store, arguments.id) : taken; !kept) {
     return std::unexpected(kept.error());
   }
   return say(context, arguments, "it may move again");

@@ -16,6 +16,7 @@
 #include "formats/sign_off_json.h"
 #include "station/command/command.h"
 #include "station/mending.h"
+#include "station/session_pages.h"
 #include "station/sign_off_words.h"
 
 namespace dubsar {
@@ -138,8 +139,30 @@ Result<int> verify_bag(const Arguments& arguments, CommandContext& context) {
   return report->ok() ? 0 : 1;
 }
 
-int print_session(const std::string& path, const VerifyReport& report, const SignOffLog& signed_off,
-                  const std::optional<Mended>& mended, bool as_json) {
+/// What there is to say of a session.
+struct Found {
+  VerifyReport report;
+  SignOffLog signed_off;
+  std::vector<Error> behind;  ///< pages that are not of what the session holds
+};
+
+/// Each page, and why it is behind.
+std::vector<Error> pages_behind(const SessionStore& store) {
+  const std::string why = why_pages_are_behind(store);
+  std::vector<Error> out;
+  for (const char* page : kPages) {
+    std::error_code unknown;
+    if (!why.empty() && fs::exists(store.folder() / page, unknown)) {
+      out.push_back({ErrorKind::kUsage, why, page, kPlan});
+    }
+  }
+  return out;
+}
+
+int print_session(const std::string& path, const Found& found, const std::optional<Mended>& mended,
+                  bool as_json) {
+  const VerifyReport& report = found.report;
+  const SignOffLog& signed_off = found.signed_off;
   // An older sign-off that a later one stands beside is history; the latest one has to hold.
   const bool signature_good =
       signed_off.damage.empty() && (signed_off.sign_offs.empty() || signed_off.sign_offs.back().holds());
@@ -159,6 +182,7 @@ int print_session(const std::string& path, const VerifyReport& report, const Sig
              {"unrecorded", report.unrecorded},
              {"extra", report.extra},
              {"set_aside", report.set_aside},
+             {"behind", errors_json(found.behind)},
              {"sign_offs", sign_offs}};
     if (mended) {
       out["repair"] = {{"notes", mended->notes},         {"records", mended->records},
@@ -181,6 +205,7 @@ int print_session(const std::string& path, const VerifyReport& report, const Sig
   print_names("no checksum kept", report.unrecorded);
   print_names("not of this session", report.extra);
   print_names("damaged original, kept", report.set_aside);
+  print_damage("behind", found.behind);
   print_damage("damaged sign-off", signed_off.damage);
   for (const CheckedSignOff& one : signed_off.sign_offs) {
     std::printf("%s\n", sign_off_line(one).c_str());
@@ -194,7 +219,7 @@ int print_session(const std::string& path, const VerifyReport& report, const Sig
 }
 
 Result<int> verify_session(const Arguments& arguments, CommandContext& context) {
-  const auto look = [&]() -> Result<std::pair<VerifyReport, SignOffLog>> {
+  const auto look = [&]() -> Result<Found> {
     const Result<SessionStore> store = SessionStore::open(arguments.path, SessionStore::Access::kReadOnly);
     if (!store) {
       return std::unexpected(store.error());
@@ -207,17 +232,17 @@ Result<int> verify_session(const Arguments& arguments, CommandContext& context) 
     if (!signed_off) {
       return std::unexpected(signed_off.error());
     }
-    return std::pair(std::move(*report), std::move(*signed_off));
+    return Found{std::move(*report), std::move(*signed_off), pages_behind(*store)};
   };
   auto found = look();
   if (!found) {
     return std::unexpected(found.error());
   }
   std::optional<Mended> mended;
-  if (arguments.repair && (!found->first.ok() || !found->first.lost.empty())) {
+  if (arguments.repair && (!found->report.ok() || !found->report.lost.empty())) {
     const std::optional<fs::path> copy =
         arguments.copy.empty() ? std::nullopt : std::optional<fs::path>(arguments.copy);
-    Result<Mended> done = mend_session(arguments.path, found->first, copy, context.job);
+    Result<Mended> done = mend_session(arguments.path, found->report, copy, context.job);
     if (!done) {
       return std::unexpected(done.error());
     }
@@ -227,7 +252,7 @@ Result<int> verify_session(const Arguments& arguments, CommandContext& context) 
       return std::unexpected(found.error());
     }
   }
-  return print_session(arguments.path, found->first, found->second, mended, context.json);
+  return print_session(arguments.path, *found, mended, context.json);
 }
 
 Result<int> verify(const Arguments& arguments, CommandContext& context) {

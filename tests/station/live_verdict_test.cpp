@@ -8,6 +8,7 @@
 #include "formats/red_map_json.h"
 #include "station/plan_again.h"
 #include "station/scan_set.h"
+#include "station/session_pages.h"
 #include "tests/station/support/followed_session.h"
 #include "tests/support/temporary_folder.h"
 
@@ -78,6 +79,12 @@ TEST_F(LiveVerdict, IsWorkedOutOfWhatIsStoredAndCanBeSignedWithoutAScanner) {
   ASSERT_FALSE(again.session.state().error) << again.session.state().error->line();
   EXPECT_TRUE(again.session.state().verdict_kept);
   EXPECT_EQ(again.session.state().scans.size(), scans);
+  {
+    const SessionStore store =
+        SessionStore::open(folder_.path() / "s", SessionStore::Access::kReadOnly).value();
+    EXPECT_TRUE(std::filesystem::exists(folder_.path() / "s" / kPages.front())) << "with its pages";
+    EXPECT_EQ(why_pages_are_behind(store), "");
+  }
   SignOff wanted;
   wanted.name = "A. Reader";
   wanted.incomplete = "the rim is lost";
@@ -108,6 +115,28 @@ TEST_F(LiveVerdict, OfASessionThatWasLeftProposesWhatPlanProposes) {
   const PlannedAgain planned = plan_again(set, set.poses, job).value();
   ASSERT_FALSE(planned.results.red_map.next.empty());
   EXPECT_EQ(red_map_to_json(*state.red_map), red_map_to_json(planned.results.red_map));
+}
+
+/// The pages of a run that was broken off must not say what was so before it.
+TEST_F(LiveVerdict, OfPagesIsTakenBackWithAWordOnAScanAndComesWithTheNext) {
+  scan_and_finish();
+  const auto why = [&] {
+    return why_pages_are_behind(
+        SessionStore::open(folder_.path() / "s", SessionStore::Access::kReadOnly).value());
+  };
+  EXPECT_EQ(why(), "");
+  Followed again(kSmallTablet, folder_.path() / "s");
+  again.session.read();
+  ASSERT_TRUE(again.wait_for_rest());
+  again.session.ask(DropScan{-1, "a test"});
+  ASSERT_TRUE(again.wait_for_phase(LivePhase::kWaiting));
+  again.session.stop();
+  ASSERT_TRUE(again.wait_for_rest());
+  EXPECT_EQ(why(), "the session was changed after they were made");
+  again.session.finish();
+  ASSERT_TRUE(again.wait_for_rest());
+  EXPECT_FALSE(again.session.state().error);
+  EXPECT_EQ(why(), "");
 }
 
 /// A key that was pressed by mistake costs nothing.

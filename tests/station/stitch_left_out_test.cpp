@@ -173,6 +173,40 @@ TEST_F(StitchLeftOut, NumbersTellWhereNoNameDoes) {
   EXPECT_EQ(stitched("scans", {"--poses", at("seven.json")}).status, 2);
 }
 
+TEST_F(StitchLeftOut, AScanIsKnownByTheNameOfItsFileToo) {
+  const fs::path scans = fs::path(at("renamed"));
+  fs::create_directories(scans);
+  for (int k = 0; k < 3; ++k) {
+    RangeGrid grid = test::bumpy_scan(k);
+    grid.source = "original_" + std::to_string(k) + ".ply";
+    ASSERT_TRUE(write_grid_ply(scans / ("00" + std::to_string(k) + ".ply"), grid, {.keep_source = true}));
+  }
+  std::vector<ScanPose> poses(poses_.begin(), poses_.begin() + 3);
+  for (ScanPose& pose : poses) {
+    pose.status = PoseStatus::kRegistered;
+    pose.file = "00" + std::to_string(pose.id) + ".ply";
+    pose.id = -1;
+  }
+  poses[0].file = "original_0.ply";  // the others are named all the same
+  ASSERT_TRUE(write_poses(at("own.json"), poses));
+  const Outcome planned = run_command({"plan", scans.string(), "--poses", at("own.json"), "--json"});
+  EXPECT_THAT(planned.json()["left_out"], ::testing::IsEmpty()) << planned.err;
+  EXPECT_THAT(planned.json()["scans"], SizeIs(3));
+  EXPECT_EQ(stitched("renamed", {"--poses", at("own.json")}).json()["scans"], 3);
+
+  // An original name goes before the name of a file, so that no pose is given twice.
+  RangeGrid grid = test::bumpy_scan(0);
+  grid.source = "001.ply";
+  ASSERT_TRUE(write_grid_ply(scans / "000.ply", grid, {.keep_source = true}));
+  poses[0].file = "elsewhere.ply";
+  ASSERT_TRUE(write_poses(at("twice.json"), poses));
+  const Outcome twice = run_command({"plan", scans.string(), "--poses", at("twice.json"), "--json"});
+  ASSERT_THAT(twice.json()["left_out"], SizeIs(1)) << twice.err;
+  EXPECT_EQ(twice.json()["left_out"][0]["file"], "original_1.ply");
+  EXPECT_EQ(twice.json()["left_out"][0]["state"], "no_pose");
+  EXPECT_THAT(twice.err, HasSubstr("original_1.ply"));
+}
+
 TEST_F(StitchLeftOut, FallsShortWithoutAFileOfAFolder) {
   harm(1);
   for (const Outcome& outcome : {with_poses(), stitched("scans")}) {
