@@ -2,6 +2,7 @@
 // Copyright The Dubsar developers
 #pragma once
 
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -52,8 +53,12 @@ struct ModelFit {
   double significance = 0;       ///< of the relief's agreement, in standard deviations
   double slid_significance =
       0;              ///< the larger one of the scan moved either way along the ICP's weakest direction
+  double places = 0;  ///< independent ones that the common surface holds (ReliefAgreement)
   double score = 0;   ///< for comparing poses of one scan: pose_support()
   bool told = false;  ///< more than the surface speaks for the pose: pins, the stage or the operator
+  bool told_by_rig = false;  ///< by the stage or a hand turn, which do not know what tablet lies there
+  /// Its relief fits as well turned by so much, so that it tells no pose (self_similarity.h).
+  std::optional<double> repeats_turned_rad;
   bool distinctive = false;           ///< the shape of what overlaps is like nothing else on the object
   std::vector<std::size_t> touching;  ///< positions in the model of the scans that it overlaps
   std::vector<std::size_t> targets;   ///< those of them that it is fitted to

@@ -91,12 +91,20 @@ bool enough(const FoundPose& found, const PoseSearchOptions& options) {
 
 FoundPose search_pose(const ScanSurface& scan, std::span<const ModelScan> model, const PoseHints& hints,
                       const PairHypotheses& pair_hypotheses, const ShapeTest& shape_is_distinctive,
-                      const PoseSearchOptions& options, const JobContext& job,
-                      const SecondLook& second_look) {
+                      const PoseSearchOptions& options, const JobContext& job, const SecondLook& second_look,
+                      const ReliefTest& relief_repeats) {
   FoundPose found;
   const auto settled_by_second_look = [&] {
     return found.verdict.status != PoseStatus::kRegistered && second_look && !job.cancelled() &&
            second_look(found);
+  };
+  // Only of what would be accepted by its relief: it costs fits of the scans on themselves.
+  const auto ask_relief = [&](std::vector<ModelFit>& fits) {
+    for (ModelFit& fit : fits) {
+      if (relief_repeats && !fit.told && sure(fit, options.verify)) {
+        fit.repeats_turned_rad = relief_repeats(fit);
+      }
+    }
   };
   const auto take = [&](std::vector<ModelFit> fits) {
     std::erase_if(fits,
@@ -107,7 +115,9 @@ FoundPose search_pose(const ScanSurface& scan, std::span<const ModelScan> model,
                    return same_pose(fit.model_from_scanner, pose, scan.centroid_mm, options.told_turn_rad,
                                     options.told_mm);
                  });
+      fit.told_by_rig = hints.asked.has_value();
     }
+    ask_relief(fits);
     merge(found.fits, std::move(fits), scan, options.fit);
     found.verdict = verify_pose(found.fits, options.verify);
   };
@@ -138,6 +148,7 @@ FoundPose search_pose(const ScanSurface& scan, std::span<const ModelScan> model,
     for (ModelFit& fit : fits) {
       fit.distinctive = fit.overlap >= options.verify.shape_overlap && shape_is_distinctive(fit);
     }
+    ask_relief(fits);
     merge(found.fits, std::move(fits), scan, options.fit);
     found.verdict = verify_pose(found.fits, options.verify);
   };
@@ -150,7 +161,11 @@ FoundPose search_pose(const ScanSurface& scan, std::span<const ModelScan> model,
     std::vector<ModelFit> fits = fit_to_model(scan, model, {&stage, 1}, close);
     for (ModelFit& fit : fits) {
       fit.told = true;
+      fit.told_by_rig = true;
     }
+    const bool other_clay = std::ranges::any_of(fits, [&](const ModelFit& fit) {
+      return !sure(fit, options.verify) && apart_beyond_noise(fit, options.verify);
+    });
     std::erase_if(fits, [&](const ModelFit& f) {
       return !same_pose(
           f.model_from_scanner, stage, scan.centroid_mm,
@@ -162,7 +177,7 @@ FoundPose search_pose(const ScanSurface& scan, std::span<const ModelScan> model,
       return {std::move(fits), verdict, false};
     }
     ModelFit as_told = judge_in_model(scan, model, stage, options.fit);
-    if (consistent_pose(as_told, options.verify)) {
+    if (!other_clay && consistent_pose(as_told, options.verify)) {
       return {{std::move(as_told)}, {PoseStatus::kRegistered, {}}, true};
     }
     found.verdict = {PoseStatus::kUnsure,

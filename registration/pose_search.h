@@ -57,6 +57,10 @@ using PairHypotheses = std::function<std::vector<PoseHypothesis>(std::size_t k)>
 /// (self_similarity.h). May be cached by the caller.
 using ShapeTest = std::function<bool(const ModelFit& fit)>;
 
+/// By how much the scan can be turned (0: only shifted) so that the relief that speaks for a fit agrees as
+/// well (self_similarity.h); nothing where it cannot. May be cached by the caller.
+using ReliefTest = std::function<std::optional<double>(const ModelFit& fit)>;
+
 /// Looks once more at what was found and is refused, or is not enough to end the search; true when it has
 /// settled it. Then `found` holds what it accepted.
 using SecondLook = std::function<bool(FoundPose& found)>;
@@ -67,6 +71,7 @@ using SecondLook = std::function<bool(FoundPose& found)>;
 [[nodiscard]] FoundPose search_pose(const ScanSurface& scan, std::span<const ModelScan> model,
                                     const PoseHints& hints, const PairHypotheses& pair_hypotheses,
                                     const ShapeTest& shape_is_distinctive, const PoseSearchOptions& options,
-                                    const JobContext& job, const SecondLook& second_look = {});
+                                    const JobContext& job, const SecondLook& second_look = {},
+                                    const ReliefTest& relief_repeats = {});
 
 }  // namespace dubsar

@@ -229,15 +229,18 @@ double Correlation::value() const {
 }
 
 double ReliefAgreement::significance(double radius_mm) const {
-  // What stands within half a radius belongs together.
-  const double places = area_mm2 / (kPi * 0.25 * radius_mm * radius_mm);
   const auto deviations = [&](const Correlation& c, double share) {
     const double rho = std::clamp(c.value(), -kMostCorrelation, kMostCorrelation);
-    return std::atanh(rho) * std::sqrt(std::max(0.0, share * places - 3.0));
+    return std::atanh(rho) * std::sqrt(std::max(0.0, share * places(radius_mm) - 3.0));
   };
   const double by_height = deviations(height, 1.0);
   const double by_tone = deviations(tone, height.n > 0 ? tone.n / height.n : 0.0);
   return by_tone <= 0 ? by_height : std::hypot(std::max(by_height, 0.0), by_tone);
+}
+
+double ReliefAgreement::places(double radius_mm) const {
+  // What stands within half a radius belongs together.
+  return area_mm2 / (kPi * 0.25 * radius_mm * radius_mm);
 }
 
 double ReliefAgreement::correlation() const {

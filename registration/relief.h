@@ -71,6 +71,8 @@ struct ReliefAgreement {
   [[nodiscard]] double significance(double radius_mm) const;
   /// The larger of the two.
   [[nodiscard]] double correlation() const;
+  /// How many independent places the common area holds.
+  [[nodiscard]] double places(double radius_mm) const;
 };
 
 /// Sends the source's relief into the target (both over their levels). A cell counts when it lies within

@@ -20,7 +20,8 @@ namespace dubsar {
 namespace {
 
 constexpr const char* kOtherGroup =
-    "it fits other scans, but not the largest group; scan what connects them, with at least 30 % overlap";
+    "it fits other scans, but not the largest group; scan what connects them, with at least 30 % overlap, or "
+    "take it out where it is of another tablet";
 
 /// A scan that sees so much more than the first one (by its scale) shows what the object's size is: the first
 /// was broken off, or saw a rim.
@@ -131,6 +132,7 @@ void ScanModel::rescale(double scale_mm) {
   surface.scale_mm = scale_mm;
   for (auto& [id, scan] : scans_) {
     scan.self_similar.reset();
+    scan.relief_repeats.reset();
     scan.tried_on.clear();
     if (scan.features.surface) {
       scan.features = make_scan_features(rescaled(whole_of(id), surface), options_.search.align);

@@ -15,6 +15,7 @@
 #include "registration/pin_advice.h"
 #include "registration/registrar.h"
 #include "registration/seen_pin.h"
+#include "registration/self_similarity.h"
 
 namespace dubsar {
 
@@ -92,7 +93,8 @@ class ScanModel {
     bool pins_expected = false;
     double own_scale_mm = 0, own_spacing_mm = 0;
     bool usable = false;
-    std::optional<bool> self_similar;  ///< once it was asked for
+    std::optional<bool> self_similar;                         ///< once it was asked for
+    std::optional<std::vector<ReliefRepeat>> relief_repeats;  ///< likewise
     int group = 0;
     RigidTransform group_from_scanner;
     std::set<int> locked_as;   ///< its ids under which the operator fixed it
@@ -156,6 +158,9 @@ class ScanModel {
   bool join_unhinted(int id, const std::vector<int>& ids, int group, JobContext& job);
   /// True when neither the scan nor what it was fitted to looks the same turned.
   bool shape_is_distinctive(int id, const ModelFit& fit, const std::vector<int>& group_ids);
+  /// By how much the scan can be turned so that what speaks for the fit agrees as well: its own relief
+  /// repeats, or that of every scan in whose relief it shows its pose.
+  std::optional<double> relief_repeats(int id, const ModelFit& fit, const std::vector<int>& group_ids);
   /// True when none of the scans that the scan brings along contradicts the group that it joins.
   [[nodiscard]] bool groups_agree(int id, const RigidTransform& group_from_scanner,
                                   const std::vector<int>& group_ids) const;

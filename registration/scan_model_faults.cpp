@@ -79,16 +79,18 @@ std::optional<ScanModel::Fault> ScanModel::fault_of(int id) {
     found->second.has_moved = false;
     return std::nullopt;
   }
+  // Bands of another tablet lie each where they fit best, too.
+  const std::string or_another = sure(fit, options_.search.verify) ? "" : "; or it is of another tablet";
   // Rows that drift apart one by one look as if something had moved, too.
   const std::optional<ScanStretch> stretch = find_stretch(surface, model, fit);
   if (stretch && stretch->is_off()) {
     ModelFit mended = fit;
     mended.model_from_scanner = stretch->model_from_mended;
     if (!find_motion(*stretch->mended, model, mended, options_.search.fit)) {
-      return Fault{motion->gained, reason_of(*stretch)};
+      return Fault{motion->gained, reason_of(*stretch) + or_another};
     }
   }
-  return Fault{motion->gained, reason_of(*motion)};
+  return Fault{motion->gained, reason_of(*motion) + or_another};
 }
 
 void ScanModel::warn_of_stretched() {

@@ -242,7 +242,8 @@ bool ScanModel::join_as_given(int id, int group, JobContext& job) {
   const FoundPose found = search_pose(
       *scan.features.surface, model_of(ids), hints, [](std::size_t) { return std::vector<PoseHypothesis>{}; },
       [&](const ModelFit& fit) { return shape_is_distinctive(id, fit, ids); }, options_.search, job,
-      [&](FoundPose& refused) { return without_foreign.settles(refused); });
+      [&](FoundPose& refused) { return without_foreign.settles(refused); },
+      [&](const ModelFit& fit) { return relief_repeats(id, fit, ids); });
   const bool registered = found.verdict.status == PoseStatus::kRegistered && !job.cancelled();
   // A rival that the given pose called up may fit better: then the given one is wrong, and no word says so.
   const PoseHint given{-1, {}, scan.group_from_scanner};

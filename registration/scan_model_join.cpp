@@ -119,7 +119,8 @@ bool ScanModel::join_unhinted(int id, const std::vector<int>& ids, int group, Jo
   FoundPose found = search_pose(
       *scan.features.surface, model, hints, from_pairs,
       [&](const ModelFit& fit) { return shape_is_distinctive(id, fit, ids); }, options_.search, job,
-      [&](FoundPose& refused) { return without_foreign.settles(refused); });
+      [&](FoundPose& refused) { return without_foreign.settles(refused); },
+      [&](const ModelFit& fit) { return relief_repeats(id, fit, ids); });
   if (!job.cancelled()) {
     for (std::size_t k = 0; k < ids.size(); ++k) {
       if (searched[k] != 0) {
@@ -182,6 +183,41 @@ bool ScanModel::shape_is_distinctive(int id, const ModelFit& fit, const std::vec
   };
   return !similar(id) && std::none_of(fit.targets.begin(), fit.targets.end(),
                                       [&](std::size_t k) { return similar(group_ids[k]); });
+}
+
+std::optional<double> ScanModel::relief_repeats(int id, const ModelFit& fit,
+                                                const std::vector<int>& group_ids) {
+  const auto repeats = [&](int i) {
+    Scan& scan = scans_.at(i);
+    if (!scan.relief_repeats) {
+      scan.relief_repeats =
+          find_relief_repeats(*scan.features.surface, options_.search.fit, options_.search.verify);
+    }
+    return repeats_as_well(*scan.relief_repeats, fit.relief, options_.search.verify);
+  };
+  if (const std::optional<double> turn_rad = repeats(id)) {
+    return turn_rad;
+  }
+  std::optional<double> repeated;
+  std::vector<int> telling;
+  for (const std::size_t k : fit.touching) {
+    if (const std::optional<double> turn_rad = repeats(group_ids[k])) {
+      repeated = turn_rad;
+    } else {
+      telling.push_back(group_ids[k]);
+    }
+  }
+  if (!repeated || telling.empty()) {
+    return repeated;
+  }
+  // What the others say alone. That it does not slide was asked of all.
+  ModelFit told = fit;
+  told.slid_significance = 0;
+  told.relief = judge_in_model(*scans_.at(id).features.surface, model_of(telling), fit.model_from_scanner,
+                               options_.search.fit)
+                    .relief;
+  told.significance = told.relief.significance(scans_.at(id).features.surface->relief.radius_mm);
+  return sure(told, options_.search.verify) ? std::nullopt : repeated;
 }
 
 bool ScanModel::groups_agree(int id, const RigidTransform& group_from_scanner,

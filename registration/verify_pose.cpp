@@ -11,6 +11,9 @@ namespace dubsar {
 
 namespace {
 
+/// What fits turned by less fits shifted.
+constexpr double kLeastTurnRad = 0.15;
+
 std::string percent(double share) {
   return std::to_string(std::lround(100.0 * share)) + " %";
 }
@@ -82,6 +85,9 @@ PoseVerdict judged_by_shape(const ModelFit& fit, const VerifyOptions& o) {
             " of the surface that one scan shows is missing from another that looked there; scan again with "
             "more overlap, or click three points on both scans"};
   }
+  if (fit.told_by_rig && !relief_is_sure && apart_beyond_noise(fit, o)) {
+    return {PoseStatus::kUnsure, not_the_same_clay()};
+  }
   if (fit.refined() && fit.icp.stability < o.least_stability && !relief_is_sure) {
     return {PoseStatus::kUnsure,
             too_even(fit.icp.weakest.head<3>().norm() > fit.icp.weakest.tail<3>().norm())};
@@ -94,11 +100,13 @@ bool shape_settles(const ModelFit& fit, const VerifyOptions& o) {
          doubt(fit, o) <= o.shape_doubt;
 }
 
-PoseVerdict two_poses(const ModelFit& a, const ModelFit& b) {
-  const RigidTransform turn = b.model_from_scanner * a.model_from_scanner.inverse();
-  return {PoseStatus::kUnsure, "two poses fit, " +
-                                   std::to_string(std::lround(deg_from_rad(turn.angle_rad()))) +
+PoseVerdict two_poses(double turn_rad) {
+  return {PoseStatus::kUnsure, "two poses fit, " + std::to_string(std::lround(deg_from_rad(turn_rad))) +
                                    " degrees apart; click one point on both scans"};
+}
+
+PoseVerdict two_poses(const ModelFit& a, const ModelFit& b) {
+  return two_poses((b.model_from_scanner * a.model_from_scanner.inverse()).angle_rad());
 }
 
 }  // namespace
@@ -108,8 +116,20 @@ bool sure(const ModelFit& fit, const VerifyOptions& options) {
   // off, too.
   const bool as_well_beside =
       fit.refined() && fit.slid_significance >= options.most_slid_held * fit.significance;
-  return !as_well_beside && telling_significance(fit, options) >= options.sure_relief &&
+  return !fit.repeats_turned_rad && !as_well_beside &&
+         telling_significance(fit, options) >= options.sure_relief &&
          fit.relief.correlation() >= options.sure_correlation;
+}
+
+bool apart_beyond_noise(const ModelFit& fit, const VerifyOptions& options) {
+  return fit.refined() && fit.places > 0 &&
+         fit.icp.rms_mm >
+             (1.0 + options.rig_residual_deviations / std::sqrt(2.0 * fit.places)) * fit.residual_sigma_mm;
+}
+
+std::string not_the_same_clay() {
+  return "the surfaces lie farther apart than noise explains, and nothing written agrees: another tablet may "
+         "lie there; check that it is the same one, and scan it again";
 }
 
 std::string too_even(bool turns) {
@@ -152,6 +172,9 @@ PoseVerdict verify_pose(std::vector<ModelFit>& fits, const VerifyOptions& option
       return judged_by_shape(fits.front(), options);
     }
     const auto second = std::find_if(first + 1, fits.end(), fits_shape);
+    if (second == fits.end() && first->repeats_turned_rad.value_or(0.0) > kLeastTurnRad) {
+      return two_poses(*first->repeats_turned_rad);
+    }
     return second != fits.end()
                ? two_poses(*first, *second)
                : PoseVerdict{

@@ -24,6 +24,10 @@ struct VerifyOptions {
   double most_absence = 0.4;       ///< samples that another camera should have seen and did not
   double usual_residual = 0.75;    ///< rms over what noise and spacing explain, of a right pose …
   double most_residual = 1.7;      ///< … and where it alone is too much
+  /// Where only the stage or a hand turn speaks for a pose, another tablet may lie there: the residuals must
+  /// be what noise and spacing explain, to within so many standard deviations for as many independent places
+  /// as the overlap holds. Right poses show 0.5 to 0.75 of it, other tablets of the same size from 1.24 on.
+  double rig_residual_deviations = 3.0;
   double least_stability = 0.003;  ///< see IcpResult::stability; below, the scan can slide or turn …
   double most_slid = 0.6;          ///< … unless the relief agrees less than this part as well when it does
   /// Where the relief agrees this part as well slid, it makes no pose sure. Right poses reach 0.89 (200
@@ -57,6 +61,13 @@ struct PoseVerdict {
 
 /// True when the relief alone shows that the pose is right.
 [[nodiscard]] bool sure(const ModelFit& fit, const VerifyOptions& options);
+
+/// True when the residuals of a refined pose are larger than noise and spacing explain, whatever its relief
+/// says: it is not the same clay, or one of the scans is bent.
+[[nodiscard]] bool apart_beyond_noise(const ModelFit& fit, const VerifyOptions& options);
+
+/// What is said of a scan that only the stage or a hand turn places, where the clay is not the same.
+[[nodiscard]] std::string not_the_same_clay();
 
 /// What speaks against a pose, 1 being too much.
 [[nodiscard]] double doubt(const ModelFit& fit, const VerifyOptions& options);

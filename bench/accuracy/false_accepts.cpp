@@ -2,9 +2,9 @@
 // Copyright The Dubsar developers
 //
 // How often registration accepts a wrong pose: simulated tablets scanned from free views and registered with
-// nothing known, many of them such that no pose can be told (blank, worn, tiny, symmetric, another tablet
-// among the scans, faces that do not overlap). Every scan but a tablet's first is one judged registration.
-// Prints one line per case and the sums; exits 1 when any accepted pose is wrong.
+// nothing known, many of them such that no pose can be told (blank, worn, tiny, symmetric, ruled, another
+// tablet among the scans, faces that do not overlap). Every scan but a tablet's first is one judged
+// registration. Prints one line per case and the sums; exits 1 when any accepted pose is wrong.
 //   dubsar-false-accepts [first seed [seeds [kind [spacing_mm]]]] [--gripped-every N]
 #include <cstdio>
 #include <string>
@@ -38,15 +38,17 @@ struct Case {
   const char* kind;                        ///< of tablet
   std::vector<std::size_t> views;          ///< of the plan
   std::vector<std::size_t> foreign_views;  ///< of another tablet, which must not be registered with these
+  double ruled_every_mm = 0;               ///< see TrueScanOptions
 };
 
 const std::vector<Case>& cases() {
   static const std::vector<std::size_t> six{0, 1, 2, 3, 4, 5};
   static const std::vector<Case> all{
-      {"text", "text", six, {}},     {"blank", "blank", six, {}},
-      {"worn", "worn", six, {}},     {"symmetric", "symmetric", six, {}},
-      {"tiny", "tiny", six, {}},     {"foreign", "text", {0, 2, 3}, {0, 2}},
-      {"faces", "text", {0, 1}, {}}, {"blank faces", "blank", {0, 1}, {}},
+      {"text", "text", six, {}},        {"blank", "blank", six, {}},
+      {"worn", "worn", six, {}},        {"symmetric", "symmetric", six, {}},
+      {"tiny", "tiny", six, {}},        {"foreign", "text", {0, 2, 3}, {0, 2}},
+      {"faces", "text", {0, 1}, {}},    {"blank faces", "blank", {0, 1}, {}},
+      {"ruled", "ruled", six, {}, 2.5},
   };
   return all;
 }
@@ -59,7 +61,8 @@ Tally run(const Case& c, std::uint64_t seed, double spacing_mm, int gripped_ever
                                   .only = views,
                                   .seed = scan_seed,
                                   .tablet_number = number,
-                                  .gripped_every = gripped_every};
+                                  .gripped_every = gripped_every,
+                                  .ruled_every_mm = c.ruled_every_mm};
   };
   std::vector<bench::TrueScan> scans = bench::true_scans(tablet, scanning(c.views, seed, 0));
   if (!c.foreign_views.empty()) {

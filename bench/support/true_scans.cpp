@@ -2,6 +2,7 @@
 // Copyright The Dubsar developers
 #include "bench/support/true_scans.h"
 
+#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <optional>
@@ -29,6 +30,25 @@ bool is_gripped(std::size_t scan, const TrueScanOptions& options) {
   return every == 1 || (every > 1 && scan % every == 1);
 }
 
+/// Draws lines along x over both faces and makes it a little wider towards +x.
+void rule(sim::SimTablet& tablet, const Eigen::Vector3d& size_mm, double every_mm) {
+  constexpr double kDepthMm = 0.15;
+  constexpr double kWidthMm = 0.25;
+  constexpr double kTaper = 0.01;
+  for (std::size_t v = 0; v < tablet.mesh.positions.size(); ++v) {
+    Eigen::Vector3d p = tablet.mesh.positions[v].cast<double>();
+    const double from_line_mm = p.y() - every_mm * std::round(p.y() / every_mm);
+    const double deep_mm = kDepthMm * std::exp(-std::pow(from_line_mm / kWidthMm, 2));
+    const Eigen::Vector3d normal = tablet.mesh.normals[v].cast<double>();
+    if (std::abs(normal.z()) > 0.5) {
+      p -= deep_mm * normal;
+    }
+    p.y() *= 1.0 + kTaper * p.x() / (0.5 * size_mm.x());
+    tablet.mesh.positions[v] = p.cast<float>();
+  }
+  tablet.mesh.normals = vertex_normals(tablet.mesh);
+}
+
 }  // namespace
 
 sim::TabletOptions random_tablet(std::uint64_t seed, std::string_view kind, double spacing_mm) {
@@ -39,12 +59,17 @@ sim::TabletOptions random_tablet(std::uint64_t seed, std::string_view kind, doub
   t.size_mm.y() = t.size_mm.x() * random.uniform(0.6, 1.2);
   t.size_mm.z() = t.size_mm.x() * random.uniform(0.35, 0.6);
   t.spacing_mm = spacing_mm;
-  if (kind == "blank" || kind == "symmetric") {
+  if (kind == "blank" || kind == "symmetric" || kind == "ruled") {
     t.text_density = 0;
     t.seal_um = 0;
   }
   if (kind == "symmetric") {
     t.size_mm.y() = t.size_mm.x();
+  }
+  if (kind == "ruled") {
+    t.size_mm.y() = 0.8 * t.size_mm.x();
+  }
+  if (kind == "symmetric" || kind == "ruled") {
     t.unevenness_mm = 0;
     t.grain_um = 4;
     t.damage = sim::DamageOptions::none();
@@ -62,9 +87,12 @@ sim::TabletOptions random_tablet(std::uint64_t seed, std::string_view kind, doub
 std::vector<TrueScan> true_scans(const sim::TabletOptions& tablet_options, const TrueScanOptions& options,
                                  const ScanVisitor& visitor) {
   JobContext job;
-  const auto tablet = sim::make_tablet(tablet_options, job);
+  auto tablet = sim::make_tablet(tablet_options, job);
   if (!tablet) {
     give_up(tablet.error());
+  }
+  if (options.ruled_every_mm > 0) {
+    rule(*tablet, tablet_options.size_mm, options.ruled_every_mm);
   }
   const MeshQuery query(tablet->mesh);
   const sim::TriangulationScanner scanner(

@@ -36,13 +36,16 @@ struct TrueScanOptions {
   int tablet_number = 0;
   double tip_diameter_mm = 1.0;
   int gripped_every = 0;  ///< fingers hold it by an edge in each so manieth scan; 0: in none
+  /// Lines 0.15 mm deep, so far apart, are drawn over both of its faces from edge to edge, and it is made 1 %
+  /// wider at one end; 0: none.
+  double ruled_every_mm = 0;
 };
 
 /// Is shown each scan as it is made, with the scene that it was made of (tablet frame).
 using ScanVisitor = std::function<void(const sim::Scene& scene, const TrueScan& scan)>;
 
 /// A tablet of random size and wear: "text" (written, damaged as most are), "blank" (no text), "worn", "tiny"
-/// (20 mm), "symmetric" (blank, square and even).
+/// (20 mm), "symmetric" (blank, square and even), "ruled" (blank, even and longer than wide: to be ruled).
 [[nodiscard]] sim::TabletOptions random_tablet(std::uint64_t seed, std::string_view kind, double spacing_mm);
 
 /// Scans it from free views with nothing told of the poses; exits the program when it cannot. Clicked tips

@@ -89,6 +89,14 @@ TEST(SimulatedTablets, OnesThatLookTheSameTurnedAreAskedAbout) {
   }
 }
 
+/// Even rulings fit themselves turned by a half: the scans that see nothing else settle no pose.
+TEST(SimulatedTablets, ARuledBlankIsAskedAbout) {
+  const auto scans =
+      bench::true_scans(bench::random_tablet(5, "ruled", 0.2),
+                        {.views = 8, .only = {0, 1, 2, 3, 4, 5}, .seed = 5, .ruled_every_mm = 2.5});
+  EXPECT_EQ(register_all(scans).wrong, 0);
+}
+
 TEST(SimulatedTablets, ScansOfAnotherOneStayOut) {
   auto scans = bench::true_scans(bench::random_tablet(7, "text", 0.2),
                                  {0.25, 0.02, 8, {0, 2, 4}, 7, bench::Pins::kNone, 0});

@@ -84,6 +84,44 @@ TEST(VerifyPose, AMouldingAloneTellsNoPose) {
   EXPECT_EQ(verdict({on_a_moulding()}).status, PoseStatus::kUnsure);
 }
 
+TEST(VerifyPose, AReliefThatFitsItselfTurnedTellsNoPose) {
+  ModelFit ruled = right_pose();
+  ruled.repeats_turned_rad = kPi;
+  const PoseVerdict turned = verdict({ruled});
+  EXPECT_EQ(turned.status, PoseStatus::kUnsure);
+  EXPECT_EQ(turned.reason, "two poses fit, 180 degrees apart; click one point on both scans");
+  ruled.repeats_turned_rad = 0;  // moved along
+  EXPECT_EQ(verdict({ruled}).status, PoseStatus::kUnsure);
+  ruled.told = true;
+  EXPECT_EQ(verdict({ruled}).status, PoseStatus::kRegistered);
+}
+
+/// Of a hand turn that was asked for, onto 200 places: nothing written agrees.
+ModelFit turned_by_hand(double residual) {
+  ModelFit fit = right_pose();
+  fit.told = fit.told_by_rig = true;
+  fit.significance = 2;
+  fit.places = 200;
+  fit.icp.rms_mm = residual * fit.residual_sigma_mm;
+  return fit;
+}
+
+TEST(VerifyPose, WhereTheRigLeadsTheResidualsMustBeNoise) {
+  EXPECT_EQ(verdict({turned_by_hand(1.1)}).status, PoseStatus::kRegistered) << "to within three sigmas";
+  const PoseVerdict other = verdict({turned_by_hand(1.2)});
+  EXPECT_EQ(other.status, PoseStatus::kUnsure);
+  EXPECT_NE(other.reason.find("another tablet may lie there"), std::string::npos) << other.reason;
+  ModelFit written = turned_by_hand(1.2);
+  written.significance = 25;
+  EXPECT_EQ(verdict({written}).status, PoseStatus::kRegistered);
+  ModelFit clicked = turned_by_hand(1.2);
+  clicked.told_by_rig = false;
+  EXPECT_EQ(verdict({clicked}).status, PoseStatus::kRegistered);
+  ModelFit few_places = turned_by_hand(1.2);
+  few_places.places = 50;
+  EXPECT_EQ(verdict({few_places}).status, PoseStatus::kRegistered);
+}
+
 /// As on a model of many scans of a real scanner: well beside the one that it shares most with, off others.
 ModelFit among_many(double partner_agreement) {
   ModelFit fit = right_pose();

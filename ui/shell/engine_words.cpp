@@ -76,12 +76,17 @@ constexpr EnginePhrase kPhrases[] = {
      " zu lang entlang der Laserlinie: die Kalibrierung stimmt nicht"},
     {" too short along the laser line: the calibration is off",
      " zu kurz entlang der Laserlinie: die Kalibrierung stimmt nicht"},
+    {"; or it is of another tablet", "; oder er ist von einer anderen Tafel"},
     {"; verify the scanner, then scan it again", "; den Scanner prüfen, dann neu scannen"},
     {"the surfaces lie farther apart than noise explains; scan again with more overlap, or check that "
      "nothing "
      "moved during the scan",
      "die Flächen liegen weiter auseinander, als Rauschen erklärt; mit mehr Überlappung neu scannen, oder "
      "nachsehen, ob sich beim Scannen etwas bewegt hat"},
+    {"the surfaces lie farther apart than noise explains, and nothing written agrees: another tablet may lie "
+     "there; check that it is the same one, and scan it again",
+     "die Flächen liegen weiter auseinander, als Rauschen erklärt, und nichts Geschriebenes stimmt überein: "
+     "vielleicht liegt eine andere Tafel da; nachsehen, ob es dieselbe ist, und sie neu scannen"},
     {"the surfaces agree in only ", "die Flächen stimmen überein in nur "},
     {" of the overlap; scan again with more overlap, or click three points on both scans",
      " der Überlappung; mit mehr Überlappung neu scannen, oder drei Stellen in beiden Scans anklicken"},
@@ -114,10 +119,10 @@ constexpr EnginePhrase kPhrases[] = {
      "in der Überlappung ist zu wenig geschrieben oder gebrochen, um diese Lage von anderen zu "
      "unterscheiden; "
      "mit mehr Überlappung neu scannen, Nadeln nehmen, oder eine Stelle in beiden Scans anklicken"},
-    {"it fits other scans, but not the largest group; scan what connects them, with at least 30 % overlap",
+    {"it fits other scans, but not the largest group; scan what connects them, with at least 30 % overlap, "
+     "or take it out where it is of another tablet",
      "er passt zu anderen Scans, aber nicht zur größten Gruppe; scannen, was sie verbindet, mit mindestens "
-     "30 % "
-     "Überlappung"},
+     "30 % Überlappung, oder ihn herausnehmen, wenn er von einer anderen Tafel ist"},
     {"it connects scans that contradict each other; one of them moved while it was scanned, or lies wrong: "
      "take "
      "that one out, or scan again what connects them",
