@@ -34,9 +34,13 @@ void take(SampleDigest& into, std::uint64_t across, std::uint64_t along) {
 /// motion that is fitted to a few of them is not exact.
 constexpr double kSamePlaceOfRounding = 8.0;
 
-/// Of one that are told the same whichever is given first.
+bool is_less(const ScanPrint& a, const ScanPrint& b) {
+  return std::tie(a.samples, a.digest) < std::tie(b.samples, b.digest);
+}
+
+/// Of the one that is less to the other: told the same whichever is given first.
 std::optional<RigidTransform> motion_between(const ScanPrint& a, const ScanPrint& b) {
-  const bool a_is_part = std::tie(a.samples, a.digest) < std::tie(b.samples, b.digest);
+  const bool a_is_part = is_less(a, b);
   return whole_from_part((a_is_part ? b : a).marks, (a_is_part ? a : b).marks);
 }
 
@@ -75,18 +79,25 @@ bool are_copies(const ScanPrint& a, const ScanPrint& b) {
   return a.digest == b.digest || motion_between(a, b).has_value();
 }
 
-bool are_copies_in_place(const ScanPrint& a, const ScanPrint& b) {
+std::optional<RigidTransform> copy_motion(const ScanPrint& a, const ScanPrint& b) {
+  if (a.digest == b.digest) {
+    return RigidTransform{};
+  }
+  std::optional<RigidTransform> motion = motion_between(a, b);
+  if (motion && is_less(a, b)) {
+    motion = motion->inverse();
+  }
+  const bool in_place = motion && std::ranges::all_of(b.marks.marks, [&](const ScanMark& mark) {
+                          const Eigen::Vector3d at = mark.at_mm.cast<double>();
+                          return (*motion * at - at).norm() <= kSamePlaceOfRounding * a.marks.rounding_mm;
+                        });
+  return in_place ? RigidTransform{} : motion;
+}
+
+bool is_part(const ScanPrint& part, const ScanPrint& whole) {
   /// Points that are put into rows and columns anew lose up to a sixth.
   constexpr double kLeastPart = 0.8;
-  const auto [less, more] = std::minmax({a.samples, b.samples});
-  if (a.digest == b.digest || static_cast<double>(less) < kLeastPart * static_cast<double>(more)) {
-    return a.digest == b.digest;
-  }
-  const std::optional<RigidTransform> motion = motion_between(a, b);
-  return motion && std::ranges::all_of(a.marks.marks, [&](const ScanMark& mark) {
-           const Eigen::Vector3d at = mark.at_mm.cast<double>();
-           return (*motion * at - at).norm() <= kSamePlaceOfRounding * a.marks.rounding_mm;
-         });
+  return static_cast<double>(part.samples) < kLeastPart * static_cast<double>(whole.samples);
 }
 
 void KnownPrints::add(int id, std::optional<ScanPrint> print) {

@@ -14,6 +14,7 @@
 
 #include "core/placed_scan.h"
 #include "core/range_grid.h"
+#include "core/rigid_transform.h"
 #include "core/scan_copy.h"
 #include "core/scan_marks.h"
 
@@ -44,9 +45,12 @@ struct ScanPrint {
 /// Whether both are one measurement: the very samples, or the same but for rounding, the order of rows and
 /// columns, what was cut off, and the frame (same_marks.h).
 [[nodiscard]] bool are_copies(const ScanPrint& a, const ScanPrint& b);
-/// The same where both are in one frame and neither has much more samples than the other: what is said of
-/// one's pose holds of the other's.
-[[nodiscard]] bool are_copies_in_place(const ScanPrint& a, const ScanPrint& b);
+/// The motion that lays the samples of `b` on those of `a`; nothing unless both are one measurement. The
+/// identity, to the last digit, where both are in one frame.
+[[nodiscard]] std::optional<RigidTransform> copy_motion(const ScanPrint& a, const ScanPrint& b);
+/// Whether one of two copies has much fewer samples than the other, `whole`: what lies around them is not
+/// known of both.
+[[nodiscard]] bool is_part(const ScanPrint& part, const ScanPrint& whole);
 
 /// Which of many scans are copies of others, as they come and go. One thread at a time.
 class KnownPrints {

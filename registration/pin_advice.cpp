@@ -12,6 +12,7 @@
 
 #include "core/number_text.h"
 #include "core/units.h"
+#include "registration/pin_contradiction.h"
 #include "registration/pin_matching.h"
 
 namespace dubsar {
@@ -255,9 +256,7 @@ class Adviser {
         const double off = (best->target_from_source * at_[s] - t.position_mm).norm();
         // Beyond what putting back, the pose and a click make of it.
         if (off > std::max(options_.too_close_mm, 5.0 * std::sqrt(variance_[s]))) {
-          return fault(PinFault::kMoved, static_cast<int>(s),
-                       name(s) + " has moved: scan " + std::to_string(best_scan->id) + " shows it " +
-                           fixed_text(off, 1) + " mm away; put it back, or correct its label");
+          return fault(PinFault::kMoved, static_cast<int>(s), moved_pin(name(s), best_scan->id, off));
         }
       }
     }

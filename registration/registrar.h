@@ -36,11 +36,10 @@ struct RegistrationOptions {
 /// reason and is tried again whenever the model has grown. The first scan is the model frame (with a nominal
 /// pose, the model frame is its tablet frame), unless it shows much less than a later one that does not fit
 /// it; scans that do not connect to it form groups of their own, and poses() reports those of the largest.
-/// A copy, a scan with the very samples of another in its frame (core/scan_copies.h), is no second
-/// measurement: it has the pose of that one with all that is said of it, and takes part in nothing, but for
-/// what the operator says under its id. When that one is taken out the copy takes its place, where it stood.
-/// Keeps features of each scan, not its grid. Not thread-safe; uses all cores inside. Same scans in the same
-/// order, same bytes.
+/// A copy, a scan with the very samples of another (core/scan_copies.h), is no second measurement: it lies
+/// where that one does, with all that is said of it, and takes part in nothing, but for what the operator
+/// says under its id. When that one is taken out the copy takes its place, where it stood. Keeps features of
+/// each scan, not its grid. Not thread-safe; uses all cores inside. Same scans in the same order, same bytes.
 class Registrar {
  public:
   explicit Registrar(const RegistrationOptions& options = {});

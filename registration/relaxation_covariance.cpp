@@ -19,7 +19,7 @@ Eigen::Matrix3d cross_matrix(const Eigen::Vector3d& v) {
 }
 
 /// Takes a twist about the model's origin to the twist about `center` of the same motion, both in the model
-/// frame.
+/// frame; about any other place, too, from which `center` is so far off.
 Matrix6d about(const Eigen::Vector3d& center) {
   Matrix6d m = Matrix6d::Identity();
   m.bottomLeftCorner<3, 3>() = -cross_matrix(center);
@@ -52,6 +52,11 @@ Matrix6d half_root(const Matrix6d& information, const Eigen::Vector3d& center_mm
 }
 
 }  // namespace
+
+Matrix6d about_place(const Matrix6d& covariance, const Eigen::Vector3d& off_mm) {
+  const Matrix6d to_place = about(off_mm);
+  return to_place * covariance * to_place.transpose();
+}
 
 bool set_covariances(std::vector<RelaxedPose>& poses, const std::vector<bool>& held,
                      const std::vector<Eigen::Vector3d>& centers_mm, const std::vector<PairConstraint>& pairs,

@@ -8,6 +8,10 @@
 
 namespace dubsar {
 
+/// The covariance of the same pose's twist about a place that is `off_mm` (model frame) from where it was
+/// given.
+[[nodiscard]] Matrix6d about_place(const Matrix6d& covariance, const Eigen::Vector3d& off_mm);
+
 /// Fills in the covariances of relaxed poses. Arguments as of relax(); `variance_factor` is how much worse
 /// the pairs agree than they claim. The pairs of one scan share the noise of its samples, half of what each
 /// pair sees, so that ten pairs do not make a pose ten times surer: the sandwich H⁻¹ M H⁻¹ with the pull M

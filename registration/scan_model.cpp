@@ -158,16 +158,17 @@ std::vector<int> ScanModel::members(int group) const {
 }
 
 std::vector<int> ScanModel::groups_by_size() const {
-  std::map<int, std::pair<int, int>> size_and_first;  // group -> (members, lowest id)
+  std::map<int, std::vector<int>> ids_of;
   for (const auto& [id, scan] : scans_) {
     if (scan.usable) {
-      auto& [size, first] = size_and_first.try_emplace(scan.group, 0, id).first->second;
-      ++size;
+      ids_of[scan.group].push_back(id);
     }
   }
+  std::map<int, std::pair<std::size_t, int>> size_and_first;  // group -> (measurements, lowest id)
   std::vector<int> out;
-  out.reserve(size_and_first.size());
-  for (const auto& [group, entry] : size_and_first) {
+  out.reserve(ids_of.size());
+  for (const auto& [group, ids] : ids_of) {
+    size_and_first[group] = {measurements(ids), ids.front()};
     out.push_back(group);
   }
   std::stable_sort(out.begin(), out.end(), [&](int a, int b) {
@@ -254,10 +255,11 @@ PoseHints ScanModel::hints_for(const Scan& scan, const std::vector<int>& group_i
   return hints;
 }
 
-bool ScanModel::place(int as, const RigidTransform& model_from_scanner, bool locked, JobContext& job) {
+bool ScanModel::place(int as, const RigidTransform& model_from_as, bool locked, JobContext& job) {
   if (const std::optional<int> other = locked_as(as); other && *other != as) {
-    return locked && lock_near(as, model_from_scanner) == LockOutcome::kLocked;
+    return locked && lock_near(as, model_from_as) == LockOutcome::kLocked;
   }
+  const RigidTransform model_from_scanner = model_from_as * scan_from(as).inverse();
   const int id = stands_as(as);
   const auto found = scans_.find(id);
   if (found == scans_.end() || !found->second.usable) {
@@ -338,7 +340,7 @@ ScanPose ScanModel::pose(int as) const {
   ScanPose out;
   out.id = as;
   out.file = id == as ? scan.file : copies_.at(as).file;
-  out.model_from_scanner = scan.group_from_scanner;
+  out.model_from_scanner = scan.group_from_scanner * scan_from(as);
   out.locked = scan.locked_as.contains(as);
   out.rms_mm = scan.rms_mm;
   out.overlap = scan.overlap;

@@ -14,6 +14,7 @@
 #include "registration/last_judgement.h"
 #include "registration/pin_advice.h"
 #include "registration/registrar.h"
+#include "registration/scan_stretch.h"
 #include "registration/seen_pin.h"
 #include "registration/self_similarity.h"
 
@@ -22,7 +23,9 @@ namespace dubsar {
 /// The scans of a Registrar, the groups that they form and the pairs between them. A group is a set of scans
 /// that are registered with each other in a frame of their own; a scan that is registered with nothing is a
 /// group of one. A scan that came under several ids (scan_copies.h) is one measurement and takes part once,
-/// under the first of them; the others are names of it.
+/// under the first of them; the others are names of it, each with the frame that its file was in. A part of
+/// another scan is placed like any other, but lies where that one does once both are in one group, and does
+/// not count beside it.
 class ScanModel {
  public:
   explicit ScanModel(const RegistrationOptions& options) : options_(options) {}
@@ -42,7 +45,7 @@ class ScanModel {
   /// since the last time: that shows with the others in place, and each that is in place may turn out to be
   /// the one.
   void put_out_faulty(JobContext& job);
-  bool place(int as, const RigidTransform& model_from_scanner, bool locked, JobContext& job);
+  bool place(int as, const RigidTransform& model_from_as, bool locked, JobContext& job);
   Status finalize(JobContext& job);
 
   [[nodiscard]] ScanPose pose(int as) const;
@@ -58,7 +61,7 @@ class ScanModel {
   /// Locks a scan where it is, or unlocks it; a lock under another id of it stands.
   bool set_locked(int id, bool locked);
   /// Locks a scan where it is, when that is the pose.
-  LockOutcome lock_near(int id, const RigidTransform& model_from_scanner);
+  LockOutcome lock_near(int id, const RigidTransform& model_from_id);
   /// Gives a scan that was just entered its pose, to be refined and verified when it joins; nothing else is
   /// looked for. All such poses are in one frame.
   void enter_at(int id, const RigidTransform& model_from_scanner);
@@ -68,6 +71,8 @@ class ScanModel {
   [[nodiscard]] int stands_as(int id) const;
   /// Under which id it is locked: this one where it is.
   [[nodiscard]] std::optional<int> locked_as(int id) const;
+  /// From the frame that the scan came in under this id to that of the id under which it takes part.
+  [[nodiscard]] RigidTransform scan_from(int id) const;
 
  private:
   class WithoutForeign;
@@ -103,7 +108,7 @@ class ScanModel {
     std::string hint_reason;   ///< why its hint led to no pose
     std::string fault_reason;  ///< why it was taken out of the model when it was last in it
     bool has_moved = false;    ///< while it was scanned, as found when it was last looked at in the model
-    std::string warning;       ///< whose lengths were off when all were in place, while it is in the model
+    std::string warning;    ///< what of it was off when all were in place (lengths, pins), while it is there
     std::string suspicion;  ///< what unit it may be in when it joins nothing; empty for nothing in particular
     PoseStatus outcome = PoseStatus::kFailed;
     double rms_mm = 0, overlap = 0, stage_sigma_mm = 0;
@@ -140,6 +145,18 @@ class ScanModel {
   bool leaves_a_copy(int id);
   /// One of its copies becomes the id under which the scan takes part.
   void hand_over(int from, int to);
+  void set_scan_from(int id, const RigidTransform& from);
+  /// The hint for this id, in the frames in which its two scans take part.
+  [[nodiscard]] PoseHint hint_for(int id) const;
+  /// Finds which scans are parts of this one, and of which it is one.
+  void find_parts(int id);
+  /// The scan of these that this one is a part of, where it is not to stand by itself: the operator's locks
+  /// hold.
+  [[nodiscard]] std::optional<int> whole_among(const std::vector<int>& ids, int id) const;
+  /// How many measurements these scans are.
+  [[nodiscard]] std::size_t measurements(const std::vector<int>& ids) const;
+  /// Lays parts of scans where these lie.
+  void place_parts(const std::vector<int>& ids);
   /// Makes the surfaces of all scans anew for another scale; what was searched before is searched again.
   void rescale(double scale_mm);
   [[nodiscard]] std::vector<int> members(int group) const;  ///< ascending ids
@@ -195,9 +212,18 @@ class ScanModel {
   [[nodiscard]] std::optional<InGroup> in_group(int id);
   void judge(int id);
   [[nodiscard]] std::optional<Fault> fault_of(int id);
-  /// Marks which scans of the main group are of another size than the rest, and says so.
-  void warn_of_stretched();
+  /// Says what is wrong with scans of the main group although their poses are sure.
+  void warn();
+  /// Marks which of these are of another size or shape than the rest.
+  void warn_of_stretched(const std::vector<int>& ids);
+  /// Marks which show labelled pins elsewhere than the rest.
+  void warn_of_pins(const std::vector<int>& ids);
+  /// How the scan, where it lies, is stretched against these others; `ids` may hold it.
+  [[nodiscard]] std::optional<ScanStretch> stretch_among(int id, std::vector<int> ids) const;
   [[nodiscard]] std::string name_of(int id) const;  ///< for people
+  /// Said of what is wrong with a scan where these, but for it, are one other only; empty where they are
+  /// more.
+  [[nodiscard]] std::string only_one(std::vector<int> ids, int id) const;
   /// The scan whose hint says how two groups lie to each other.
   [[nodiscard]] std::optional<int> hint_between(int group_a, int group_b) const;
   /// Whether no hint between the scan's group and the other contradicts the pose.
@@ -213,7 +239,9 @@ class ScanModel {
   bool is_unsettled_ = false;  ///< a relaxation was broken off: finalize() makes up for it
   int next_group_ = 0;
   std::map<int, Scan> scans_;
-  std::map<int, Copy> copies_;  ///< by id; no id is in both
+  std::map<int, Copy> copies_;               ///< by id; no id is in both
+  std::map<int, RigidTransform> scan_from_;  ///< scan_from() of the ids that came in another frame
+  std::map<std::pair<int, int>, RigidTransform> parts_;  ///< (part, whole): whole_from_part
   std::map<std::pair<int, int>, Pair> pairs_;
   std::set<int> unchecked_;        ///< joined, or with another that joined beside it, since put_out_faulty()
   std::map<int, PoseHint> hints_;  ///< by the id of the scan that they are for

@@ -2,7 +2,8 @@
 // Copyright The Dubsar developers
 // Scans that came more than once. The same samples twice are no second measurement: they would halve the
 // variance of what they say and vouch for each other. So a copy is only another id of the scan that is in: a
-// word that the operator gives under either is said of both.
+// word that the operator gives under either is said of both. The samples tell the motion between copies in
+// two frames, to within their rounding, so that these need no pose of their own.
 #include <algorithm>
 
 #include "registration/scan_model.h"
@@ -12,6 +13,24 @@ namespace dubsar {
 int ScanModel::stands_as(int id) const {
   const auto copy = copies_.find(id);
   return copy == copies_.end() ? id : copy->second.of;
+}
+
+RigidTransform ScanModel::scan_from(int id) const {
+  const auto from = scan_from_.find(id);
+  return from == scan_from_.end() ? RigidTransform{} : from->second;
+}
+
+PoseHint ScanModel::hint_for(int id) const {
+  PoseHint hint = hints_.at(id);
+  const RigidTransform from = scan_from(id);
+  const RigidTransform on_from = scan_from(hint.on);
+  for (PointPair& pair : hint.points) {
+    pair = {from * pair.point_mm, on_from * pair.on_point_mm};
+  }
+  if (hint.on_from_scanner) {
+    hint.on_from_scanner = on_from * *hint.on_from_scanner * from.inverse();
+  }
+  return hint;
 }
 
 std::optional<int> ScanModel::locked_as(int id) const {
@@ -50,18 +69,24 @@ bool ScanModel::may_place(int original, int id, const RangeGrid& grid, const Pin
 
 bool ScanModel::take_in(int id, const RangeGrid* grid, const PinSet* pins, bool has_start, JobContext& job) {
   std::optional<ScanPrint> print = grid != nullptr ? scan_print(*grid) : std::nullopt;
+  std::optional<RigidTransform> scan_from_this;
   const auto is_same = [&](const auto& entry) {
     const std::optional<ScanPrint>& other = entry.second.print;
-    return print && other && are_copies_in_place(*print, *other);
+    scan_from_this = print && other && !is_part(*print, *other) && !is_part(*other, *print)
+                         ? copy_motion(*other, *print)
+                         : std::nullopt;
+    return scan_from_this.has_value();
   };
   const auto before = scans_.find(stands_as(id));
   const bool is_replaced = before != scans_.end() && is_same(*before);
   remove(id, job);
   std::map<int, Copy> others;
+  std::map<int, RigidTransform> others_from;
   if (const auto original = std::ranges::find_if(scans_, is_same); original != scans_.end()) {
     const auto& [of, scan] = *original;
     if (scan.is_locked() || (!is_replaced && !may_place(of, id, *grid, pins, has_start))) {
       copies_[id] = {of, grid->source};
+      set_scan_from(id, *scan_from_this);
       return false;
     }
     // All ids of it are entered anew.
@@ -71,13 +96,28 @@ bool ScanModel::take_in(int id, const RangeGrid* grid, const PinSet* pins, bool 
         others[other] = {id, copy.file};
       }
     }
-    std::erase_if(copies_, [of](const auto& entry) { return entry.second.of == of; });
+    for (const auto& [other, copy] : others) {
+      others_from[other] = scan_from_this->inverse() * scan_from(other);
+      copies_.erase(other);
+    }
     remove(of, job);
   }
   enter(id, grid, pins);
   scans_.at(id).print = std::move(print);
   copies_.merge(others);
+  for (const auto& [other, from] : others_from) {
+    set_scan_from(other, from);
+  }
+  find_parts(id);
   return true;
+}
+
+void ScanModel::set_scan_from(int id, const RigidTransform& from) {
+  if (from.row_major() == RigidTransform{}.row_major()) {
+    scan_from_.erase(id);
+  } else {
+    scan_from_[id] = from.orthonormalised();
+  }
 }
 
 bool ScanModel::leaves_a_copy(int id) {
@@ -120,6 +160,12 @@ void ScanModel::hand_over(int from, int to) {
   if (unchecked_.erase(from) > 0) {
     unchecked_.insert(to);
   }
+  std::map<std::pair<int, int>, RigidTransform> parts;
+  for (const auto& [key, whole_from_part] : parts_) {
+    const auto [part, whole] = key;
+    parts[{part == from ? to : part, whole == from ? to : whole}] = whole_from_part;
+  }
+  parts_ = std::move(parts);
   std::map<std::pair<int, int>, Pair> pairs;
   for (const auto& [key, pair] : pairs_) {
     const int a = key.first == from ? to : key.first;

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright The Dubsar developers
-// How a scan is found during which something moved, or whose lengths are not those of the others.
+// How a scan is found during which something moved, or whose lengths or pins are not those of the others.
 #include <algorithm>
 
 #include "core/log.h"
 #include "core/parallel.h"
+#include "registration/pin_contradiction.h"
 #include "registration/scan_model.h"
 #include "registration/scan_motion.h"
 #include "registration/scan_stretch.h"
@@ -38,10 +39,7 @@ void ScanModel::put_out_faulty(JobContext& job) {
     const std::vector<int> rest = members(group);
     scan.fault_reason = worst->reason;
     scan.has_moved = true;
-    if (rest.size() == 1) {
-      scan.fault_reason +=
-          "; or that is wrong with " + name_of(rest.front()) + ", the only one that it was compared with";
-    }
+    scan.fault_reason += only_one(rest, worst_id);
     scan.outcome = PoseStatus::kUnsure;
     scan.leads.clear();
     // Tried again when there is a scan that it has not met: the other one may be the one that moved.
@@ -93,11 +91,35 @@ std::optional<ScanModel::Fault> ScanModel::fault_of(int id) {
   return Fault{motion->gained, reason_of(*motion) + or_another};
 }
 
-void ScanModel::warn_of_stretched() {
+void ScanModel::warn() {
   for (auto& [id, scan] : scans_) {
     scan.warning.clear();
   }
   const std::vector<int> ids = members(main_group());
+  warn_of_stretched(ids);
+  warn_of_pins(ids);
+  for (const int id : ids) {
+    if (const std::string& warning = scans_.at(id).warning; !warning.empty()) {
+      log_warning(name_of(id) + ": " + warning);
+    }
+  }
+}
+
+void ScanModel::warn_of_pins(const std::vector<int>& ids) {
+  std::vector<ScanPinsInModel> pins;
+  pins.reserve(ids.size());
+  for (const int id : ids) {
+    pins.push_back({id, scans_.at(id).pins, scans_.at(id).group_from_scanner});
+  }
+  const std::vector<std::string> said = contradicted_labels(pins);
+  for (std::size_t k = 0; k < ids.size(); ++k) {
+    std::string& warning = scans_.at(ids[k]).warning;
+    warning += (warning.empty() || said[k].empty() ? "" : "; ") + said[k];
+  }
+}
+
+void ScanModel::warn_of_stretched(const std::vector<int>& ids) {
+  std::vector<std::optional<ScanStretch>> stretches(ids.size());
   parallel_for_each_index(
       ids.size(),
       [&](std::size_t k) {
@@ -107,21 +129,47 @@ void ScanModel::warn_of_stretched() {
         }
         const ScanSurface& surface = *placed->scan.surface;
         const std::vector<ModelScan> model = model_scans(placed->others);
-        const ModelFit& fit = placed->fit;
-        if (!may_be_stretched(surface, model, fit)) {
-          return;
-        }
-        const std::optional<ScanStretch> stretch = find_stretch(surface, model, fit);
-        if (stretch && stretch->is_off()) {
-          scans_.at(ids[k]).warning = reason_of(*stretch);
+        if (may_be_stretched(surface, model, placed->fit)) {
+          stretches[k] = find_stretch(surface, model, placed->fit);
         }
       },
       1);
-  for (const int id : ids) {
-    if (const std::string& warning = scans_.at(id).warning; !warning.empty()) {
-      log_warning(name_of(id) + ": " + warning);
+  // The worst first: what a scan shows against one that is off may be that one's.
+  std::vector<std::size_t> accused;
+  for (std::size_t k = 0; k < ids.size(); ++k) {
+    if (stretches[k] && stretches[k]->is_off()) {
+      accused.push_back(k);
     }
   }
+  std::ranges::stable_sort(accused, std::ranges::greater{},
+                           [&](std::size_t k) { return stretches[k]->largest(); });
+  std::vector<int> sound = ids;
+  for (const std::size_t k : accused) {
+    if (sound.size() < ids.size()) {
+      const std::optional<ScanStretch> alone = stretch_among(ids[k], sound);
+      if (alone && alone->is_certain() && !alone->is_off()) {
+        continue;
+      }
+    }
+    std::erase(sound, ids[k]);
+    scans_.at(ids[k]).warning = reason_of(*stretches[k]) + only_one(ids, ids[k]);
+  }
+}
+
+std::optional<ScanStretch> ScanModel::stretch_among(int id, std::vector<int> ids) const {
+  std::erase(ids, id);
+  const Scan& scan = scans_.at(id);
+  const std::vector<ModelScan> model = model_of(ids);
+  const ModelFit fit =
+      judge_in_model(*scan.features.surface, model, scan.group_from_scanner, options_.search.fit);
+  return find_stretch(*scan.features.surface, model, fit);
+}
+
+std::string ScanModel::only_one(std::vector<int> ids, int id) const {
+  std::erase(ids, id);
+  return ids.size() == 1
+             ? "; or that is wrong with " + name_of(ids.front()) + ", the only one that it was compared with"
+             : "";
 }
 
 std::string ScanModel::name_of(int id) const {

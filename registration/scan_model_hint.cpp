@@ -52,8 +52,9 @@ bool ScanModel::hints_hold(int id, int group, const RigidTransform& group_from_s
     }
     const bool spans = (hinted->second.group == scan.group && on->second.group == group) ||
                        (hinted->second.group == group && on->second.group == scan.group);
-    return !spans || agrees_with(entry.second, in_group(on->second).inverse() * in_group(hinted->second),
-                                 hinted->second.features.surface->centroid_mm);
+    return !spans ||
+           agrees_with(hint_for(entry.first), in_group(on->second).inverse() * in_group(hinted->second),
+                       hinted->second.features.surface->centroid_mm);
   });
 }
 
@@ -110,7 +111,7 @@ bool ScanModel::join_from(int id, int group, const std::vector<RigidTransform>& 
 bool ScanModel::join_by_hint(int hinted, JobContext& job) {
   const int hinted_id = stands_as(hinted);
   Scan& scan = scans_.at(hinted_id);
-  const PoseHint& hint = hints_.at(hinted);
+  const PoseHint hint = hint_for(hinted);
   Scan& on = scans_.at(stands_as(hint.on));
   const RigidTransform group_from_on = on.group_from_scanner;
   const int group = on.group;
@@ -185,7 +186,7 @@ bool ScanModel::follow_hint(int id, JobContext& job) {
   bool apart = false;
   if (scan.group == on->second.group) {
     const RigidTransform now = on->second.group_from_scanner.inverse() * scan.group_from_scanner;
-    if (agrees_with(hint->second, now, scan.features.surface->centroid_mm)) {
+    if (agrees_with(hint_for(id), now, scan.features.surface->centroid_mm)) {
       return true;
     }
     if (scan.is_locked()) {
@@ -215,7 +216,8 @@ bool ScanModel::set_locked(int id, bool locked) {
   return true;
 }
 
-LockOutcome ScanModel::lock_near(int id, const RigidTransform& model_from_scanner) {
+LockOutcome ScanModel::lock_near(int id, const RigidTransform& model_from_id) {
+  const RigidTransform model_from_scanner = model_from_id * scan_from(id).inverse();
   const auto found = scans_.find(stands_as(id));
   if (found == scans_.end() || pose(id).status != PoseStatus::kRegistered) {
     return LockOutcome::kNotRegistered;

@@ -251,10 +251,12 @@ void ScanModel::connect(int id, const ModelFit& fit, bool by_stage, const std::v
   const auto locked = [&](const std::vector<int>& ids) {
     return std::any_of(ids.begin(), ids.end(), [&](int i) { return scans_.at(i).is_locked(); });
   };
-  const bool own_moves = locked(own_ids) == locked(group_ids)
-                             ? own_ids.size() < group_ids.size() ||
-                                   (own_ids.size() == group_ids.size() && group_ids.front() < own_ids.front())
-                             : locked(group_ids);
+  const std::size_t own_size = measurements(own_ids);
+  const std::size_t group_size = measurements(group_ids);
+  const bool own_moves =
+      locked(own_ids) == locked(group_ids)
+          ? own_size < group_size || (own_size == group_size && group_ids.front() < own_ids.front())
+          : locked(group_ids);
   const RigidTransform move = own_moves ? group_from_own : group_from_own.inverse();
   for (const int i : own_moves ? own_ids : group_ids) {
     Scan& moved = scans_.at(i);

@@ -16,6 +16,7 @@ constexpr const char* kConnectionGone =
 }  // namespace
 
 bool ScanModel::remove(int id, JobContext& job) {
+  scan_from_.erase(id);
   if (leaves_a_copy(id)) {
     return true;
   }
@@ -24,6 +25,7 @@ bool ScanModel::remove(int id, JobContext& job) {
   }
   const bool apart = leave(id);
   scans_.erase(id);
+  std::erase_if(parts_, [id](const auto& e) { return e.first.first == id || e.first.second == id; });
   bool accused = false;
   for (auto& [other, scan] : scans_) {
     scan.tried_on.erase(id);
@@ -107,7 +109,8 @@ std::vector<std::vector<int>> ScanModel::pieces_of(int group) const {
   for (auto& [root, piece] : by_root) {
     pieces.push_back(std::move(piece));
   }
-  std::ranges::stable_sort(pieces, std::ranges::greater{}, &std::vector<int>::size);
+  std::ranges::stable_sort(pieces, std::ranges::greater{},
+                           [&](const std::vector<int>& piece) { return measurements(piece); });
   // What the operator fixed lies in the frame of the largest piece, connected or not.
   const auto locked = std::ranges::find_if(pieces, [&](const std::vector<int>& piece) {
     return std::ranges::any_of(piece, [&](int id) { return scans_.at(id).is_locked(); });

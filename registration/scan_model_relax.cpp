@@ -63,8 +63,11 @@ bool ScanModel::pair_is_fresh(int a, int b) const {
 }
 
 Status ScanModel::relax_group(int group, const JobContext& job) {
-  const std::vector<int> ids = members(group);
+  const std::vector<int> all = members(group);
+  std::vector<int> ids = all;
+  std::erase_if(ids, [&](int id) { return whole_among(all, id).has_value(); });
   if (ids.size() < 2) {
+    place_parts(all);
     return {};
   }
   std::map<int, std::size_t> place;
@@ -120,6 +123,7 @@ Status ScanModel::relax_group(int group, const JobContext& job) {
     scan.group_from_scanner = (*relaxed)[place[id]].model_from_scanner;
     scan.covariance = (*relaxed)[place[id]].covariance;
   }
+  place_parts(all);
   return {};
 }
 
@@ -211,7 +215,7 @@ Status ScanModel::finalize(JobContext& job) {
   if (job.cancelled()) {
     return fail(ErrorKind::kCancelled, "registration was stopped");
   }
-  warn_of_stretched();
+  warn();
   job.progress("checking scans", 1.0);
   return {};
 }

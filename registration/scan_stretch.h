@@ -16,13 +16,23 @@ namespace dubsar {
 struct ScanStretch {
   double along_line = 0;    ///< the laser's line, x
   double along_motion = 0;  ///< the stage's, y
-  double sigma = 0;         ///< of the worse determined one, if samples were independent
-  /// The scan's samples with it taken off, and where they then lie: for what else may be wrong.
+  double shear = 0;         ///< x that is added for each y: lines drift sideways, or the axes are not square
+  double sigma = 0;         ///< of the worse determined length, if samples were independent
+  double shear_sigma = 0;   ///< likewise
+  /// The scan's samples with both taken off, and where they then lie: for what else may be wrong.
   std::unique_ptr<ScanSurface> mended;
   RigidTransform model_from_mended;
 
   /// Beyond what right scans were seen to show, and certain.
-  [[nodiscard]] bool is_off() const;
+  [[nodiscard]] bool has_lengths_off() const;
+  [[nodiscard]] bool is_sheared() const;
+  [[nodiscard]] bool is_off() const { return has_lengths_off() || is_sheared(); }
+  /// The shear is what is to be told, not the lengths.
+  [[nodiscard]] bool is_rather_sheared() const;
+  /// How much of that.
+  [[nodiscard]] double largest() const;
+  /// Enough is shared to tell lengths.
+  [[nodiscard]] bool is_certain() const;
 };
 
 /// Fits the scan to the others with its lengths left free: a stage whose step is not what it says, or a scan

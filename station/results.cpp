@@ -72,8 +72,8 @@ std::vector<std::string> accuracy_sentences(const std::vector<ScanPose>& poses,
           1000 * worst_sigma_mm)};
   for (const ScanPose& pose : poses) {
     if (pose.status == PoseStatus::kRegistered && !pose.warning.empty()) {
-      out.push_back(fmt::format("Lengths in the model that come from scan {} are not to be trusted: {}.",
-                                pose.id, pose.warning));
+      out.push_back(
+          fmt::format("Scan {} is in the model, and a warning stands of it: {}.", pose.id, pose.warning));
     }
   }
   if (auto prediction = prediction_sentence(gains)) {

@@ -53,7 +53,12 @@ bool is_copy(const RangeGrid& a, const RangeGrid& b) {
 }
 
 bool is_copy_in_place(const RangeGrid& a, const RangeGrid& b) {
-  return are_copies_in_place(*scan_print(a), *scan_print(b));
+  const auto motion = copy_motion(*scan_print(a), *scan_print(b));
+  return motion && motion->row_major() == RigidTransform{}.row_major();
+}
+
+bool is_part_of(const RangeGrid& part, const RangeGrid& whole) {
+  return is_part(*scan_print(part), *scan_print(whole));
 }
 
 TEST(SameMarks, AScanIsKnownAgainInAnyForm) {
@@ -137,12 +142,33 @@ TEST(SameMarks, PartsThatOverlapAreNoCopies) {
   }
 }
 
-TEST(SameMarks, APoseHoldsOfACopyInTheSameFrameAlone) {
+/// Whichever has more samples.
+TEST(SameMarks, TheMotionBetweenCopiesIsThatFromTheSecond) {
+  const RangeGrid grid = scan(0.02, 1);
+  const RangeGrid part = moved(reversed(cropped(grid, 0.2, 0.7)), elsewhere());
+  const auto whole_motion = copy_motion(*scan_print(grid), *scan_print(part));
+  const auto part_motion = copy_motion(*scan_print(part), *scan_print(grid));
+  ASSERT_TRUE(whole_motion && part_motion);
+  for (const Eigen::Vector3d& p : {Eigen::Vector3d(0, 0, 0), Eigen::Vector3d(10, -10, 1)}) {
+    EXPECT_LT((*whole_motion * (elsewhere() * p) - p).norm(), 0.001);
+    EXPECT_LT((*part_motion * p - elsewhere() * p).norm(), 0.001);
+  }
+  EXPECT_FALSE(copy_motion(*scan_print(grid), *scan_print(scan(0.02, 2))));
+}
+
+TEST(SameMarks, APartHasMuchFewerSamples) {
+  const RangeGrid grid = scan(0.02, 1);
+  EXPECT_TRUE(is_part_of(cropped(grid, 0.2, 0.7), grid));
+  EXPECT_FALSE(is_part_of(grid, cropped(grid, 0.2, 0.7)));
+  EXPECT_FALSE(is_part_of(cropped(grid, 0.02, 0.99), grid));
+}
+
+TEST(SameMarks, CopiesInOneFrameAreToldExactly) {
   const RangeGrid grid = scan(0.02, 1);
   EXPECT_TRUE(is_copy_in_place(grid, grid));
   EXPECT_TRUE(is_copy_in_place(grid, rounded(transposed(grid), 0.001)));
   EXPECT_TRUE(is_copy_in_place(grid, rounded(reversed(cropped(grid, 0.02, 0.99)), 0.001)));
-  EXPECT_FALSE(is_copy_in_place(grid, cropped(grid, 0.2, 0.7)));
+  EXPECT_TRUE(is_copy_in_place(grid, cropped(grid, 0.2, 0.7)));
   EXPECT_FALSE(is_copy_in_place(grid, moved(grid, elsewhere())));
   EXPECT_FALSE(is_copy_in_place(grid, moved(grid, RigidTransform::from_twist({0, 0, 0}, {0.05, 0, 0}))));
 }

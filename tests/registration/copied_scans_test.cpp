@@ -149,15 +149,6 @@ TEST_F(CopiedScans, MayBeWrittenOtherwise) {
   expect_one(pose(7), pose(1));
 }
 
-TEST_F(CopiedScans, InAnotherFrameHaveAPoseOfTheirOwn) {
-  add({{0, 0}, {1, 1}});
-  const RigidTransform elsewhere = RigidTransform::from_twist({0, 0, 0.2}, {3, 2, 5});
-  registrar.add(7, std::make_shared<const RangeGrid>(test::moved(*grids()[1], elsewhere)), nullptr, job);
-  ASSERT_EQ(pose(7).status, PoseStatus::kRegistered);
-  const Eigen::Vector3d p(5, -5, 0);
-  EXPECT_LT((pose(7).model_from_scanner * (elsewhere * p) - pose(1).model_from_scanner * p).norm(), 0.1);
-}
-
 TEST_F(CopiedScans, OtherNoiseMakesAnotherScan) {
   add({{0, 0}, {1, 1}});
   registrar.add(7, scanned(bumpy(31), truth()[1], 77), nullptr, job);

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright The Dubsar developers
 //
-// A scan whose lengths are not those of the others: a stage with another step, another calibration.
+// A scan whose lengths are not those of the others: a stage with another step, another calibration, one that
+// drifts sideways.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -31,8 +32,8 @@ const std::vector<bench::TrueScan>& true_scans() {
   return scans;
 }
 
-/// About its middle, as a scan comes out that was taken with wrong lengths.
-std::shared_ptr<const RangeGrid> stretched(const RangeGrid& grid, const Eigen::Vector3f& by) {
+/// About its middle, as a scan comes out that was taken with wrong lengths, or lines that drift sideways.
+std::shared_ptr<const RangeGrid> stretched(const RangeGrid& grid, const Eigen::Vector3f& by, float shear) {
   auto out = std::make_shared<RangeGrid>(grid);
   Eigen::Vector3f middle = Eigen::Vector3f::Zero();
   for (std::size_t i = 0; i < grid.size(); ++i) {
@@ -40,8 +41,9 @@ std::shared_ptr<const RangeGrid> stretched(const RangeGrid& grid, const Eigen::V
   }
   middle /= static_cast<float>(grid.valid_count());
   for (std::size_t i = 0; i < grid.size(); ++i) {
-    const Eigen::Vector3f p = by.cwiseProduct(grid.point(i) - middle) + middle;
-    out->x[i] = p.x();
+    const Eigen::Vector3f from = grid.point(i) - middle;
+    const Eigen::Vector3f p = by.cwiseProduct(from) + middle;
+    out->x[i] = p.x() + shear * from.y();
     out->y[i] = p.y();
     out->z[i] = p.z();
   }
@@ -68,6 +70,7 @@ struct Lengths {
   const char* name;
   Eigen::Vector3f by;
   const char* reason;  ///< empty: nothing is off
+  float shear = 0;
 };
 
 class StretchedScan : public testing::TestWithParam<Lengths> {
@@ -76,7 +79,7 @@ class StretchedScan : public testing::TestWithParam<Lengths> {
     std::vector<std::shared_ptr<const RangeGrid>> grids;
     for (std::size_t k = 0; k < true_scans().size(); ++k) {
       const auto& grid = true_scans()[k].grid;
-      grids.push_back(k == kStretched ? stretched(*grid, GetParam().by) : grid);
+      grids.push_back(k == kStretched ? stretched(*grid, GetParam().by, GetParam().shear) : grid);
     }
     return said_of(grids);
   }
@@ -91,8 +94,8 @@ TEST_P(StretchedScan, IsMeasuredFromWhereItLies) {
     scale_mm = k == 0 ? surface_scale_mm(*grid) : scale_mm;
     ScanSurfaceOptions options;
     options.scale_mm = scale_mm;
-    surfaces.push_back(
-        make_scan_surface(k == kStretched ? *stretched(*grid, GetParam().by) : *grid, {}, options));
+    surfaces.push_back(make_scan_surface(
+        k == kStretched ? *stretched(*grid, GetParam().by, GetParam().shear) : *grid, {}, options));
     if (k != kStretched) {
       others.push_back({surfaces.back().get(), true_scans()[k].tablet_from_scanner});
     }
@@ -103,6 +106,7 @@ TEST_P(StretchedScan, IsMeasuredFromWhereItLies) {
   ASSERT_TRUE(found);
   EXPECT_NEAR(found->along_line, static_cast<double>(GetParam().by.x()) - 1.0, 0.006);
   EXPECT_NEAR(found->along_motion, static_cast<double>(GetParam().by.y()) - 1.0, 0.006);
+  EXPECT_NEAR(found->shear, static_cast<double>(GetParam().shear), 0.003);
   EXPECT_EQ(found->is_off(), *GetParam().reason != '\0');
   // What costs less says so beforehand.
   EXPECT_EQ(may_be_stretched(*surfaces[kStretched], others, fit), found->is_off());
@@ -122,8 +126,32 @@ INSTANTIATE_TEST_SUITE_P(
                     Lengths{"TooLarge", {1.02F, 1.02F, 1.02F}, "too large: its calibration is not theirs"},
                     Lengths{"TooShortAStep", {1.0F, 0.97F, 1.0F}, "too short along the motion"},
                     // One of two scans, and nothing tells which: said of either.
-                    Lengths{"TooLongALine", {1.02F, 1.0F, 1.0F}, "against the other scans"}),
+                    Lengths{"TooLongALine", {1.02F, 1.0F, 1.0F}, "against the other scans"},
+                    Lengths{"Sheared", {1.0F, 1.0F, 1.0F}, "sheared sideways by 3.", 0.03F},
+                    Lengths{"ShearedTheOtherWay", {1.0F, 1.0F, 1.0F}, "sheared sideways by", -0.02F}),
     [](const auto& one) { return std::string(one.param.name); });
+
+/// One of many, whose place is sure all the same: it is told, and none of those that it touches is.
+TEST(ShearedScan, IsWarnedOfAlone) {
+  const std::vector<bench::TrueScan> scans = bench::true_scans(
+      bench::random_tablet(kSeed, "text", 0.2), {0.2, 0.02, 12, {}, kSeed, bench::Pins::kNone, 0});
+  constexpr int kSheared = 3;
+  JobContext job;
+  Registrar registrar;
+  for (int k = 0; k < static_cast<int>(scans.size()); ++k) {
+    const auto& grid = scans[static_cast<std::size_t>(k)].grid;
+    registrar.add(k, k == kSheared ? stretched(*grid, {1, 1, 1}, 0.03F) : grid, nullptr, job);
+  }
+  ASSERT_TRUE(registrar.finalize(job));
+  for (const ScanPose& pose : registrar.poses()) {
+    EXPECT_EQ(pose.status, PoseStatus::kRegistered) << pose.id << pose.reason;
+    if (pose.id == kSheared) {
+      EXPECT_THAT(pose.warning, HasSubstr("against the other scans it is sheared sideways by 3."));
+    } else {
+      EXPECT_EQ(pose.warning, "") << pose.id;
+    }
+  }
+}
 
 /// Small and coarse: a rim is a larger part of them.
 class RightScans : public testing::TestWithParam<std::uint64_t> {};

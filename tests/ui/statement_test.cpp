@@ -277,10 +277,10 @@ TEST(Statement, WrongLengthsAreSaidBeforeTheSignature) {
                 HasSubstr("Scan 4: gegen die anderen Scans ist er 1,2 % zu groß"));
   }
   EXPECT_EQ(statement_of(state, true, Language::kEnglish).headline,
-            "Conclusive, but lengths of a scan are off: check, then sign");
+            "Conclusive, but of a scan there is a warning: check, then sign");
   state.scans.push_back(state.scans.back());
   EXPECT_THAT(statement_of(state, true, Language::kEnglish).detail,
-              HasSubstr("scan it again. More scans whose lengths are off: 1."));
+              HasSubstr("scan it again. More scans with a warning: 1."));
   state.scans.pop_back();
   state.scans.back().dropped = true;
   EXPECT_EQ(statement_of(state, true, Language::kEnglish).detail, "");

@@ -58,7 +58,7 @@ bool is_of_loss(const LiveScan& scan) {
 std::string words_under(const UiContext& ui, const LiveState& state, const LiveScan& scan) {
   const bool is_warned = !scan_warning(scan, ui.preferences.language).empty();
   const std::optional<int> first = copy_of(state, scan);
-  const Text says = is_warned          ? Text::kLengthsOff
+  const Text says = is_warned          ? Text::kWarned
                     : is_of_loss(scan) ? Text::kRecordLost
                                        : state_text(state, scan);
   std::string words = fmt::format(

@@ -160,7 +160,7 @@ void OperatorScreen::draw_left(UiContext& ui, ImVec2 size) {
       ui.facts.insert(fmt::format("scan.{}.warned", scan.id));
       ImGui::PushFont(ui.fonts.small);
       coloured_text(ui.colours.amber,
-                    filled(ui.text(Text::kScanSays), scan.id, ui.text(Text::kLengthsOff)).c_str());
+                    filled(ui.text(Text::kScanSays), scan.id, ui.text(Text::kWarned)).c_str());
       ImGui::PopFont();
     }
   }

@@ -38,7 +38,7 @@ bool add_warnings(Statement& out, const LiveState& state, Language language) {
     }
   }
   if (warned > 1) {
-    add_sentence(out.detail, filled(text_of(Text::kMoreLengthsOff, language), warned - 1));
+    add_sentence(out.detail, filled(text_of(Text::kMoreWarned, language), warned - 1));
   }
   return warned > 0;
 }

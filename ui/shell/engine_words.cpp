@@ -66,6 +66,10 @@ constexpr EnginePhrase kPhrases[] = {
     {" mm; have nothing in view but the tablet, or cover what it lies on, and scan again",
      " mm; nichts als die Tafel im Bild haben, oder abdecken, worauf sie liegt, und neu scannen"},
     {"against the other scans it is ", "gegen die anderen Scans ist er "},
+    {"sheared sideways by ", "seitlich geschert um "},
+    {" of its motion: it drifted while it was scanned, or the stage does not run square to the laser line",
+     " seiner Bewegung: er ist beim Scannen gedriftet, oder die Achse läuft nicht rechtwinklig zur "
+     "Laserlinie"},
     {" too large: its calibration is not theirs", " zu groß: seine Kalibrierung ist nicht die ihre"},
     {" too small: its calibration is not theirs", " zu klein: seine Kalibrierung ist nicht die ihre"},
     {" too long along the motion: the step of the stage, or the calibration, is off",

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "core/rigid_transform.h"
+#include "registration/pin_advice.h"
+
+namespace dubsar {
+
+/// The pins of a scan whose pose is sure.
+struct ScanPinsInModel {
+  int id = 0;
+  std::vector<SeenPin> tips;  ///< scanner frame
+  RigidTransform model_from_scanner;
+};
+
+/// Labels that the poses contradict: a pin was put elsewhere between two scans, or has another's label. Where
+/// scans disagree about a label, those that most others agree with are right; of equals the first. For each
+/// scan one line for the operator, on the pin that is farthest off; empty where nothing is.
+[[nodiscard]] std::vector<std::string> contradicted_labels(std::span<const ScanPinsInModel> scans,
+                                                           const PinAdviceOptions& options = {});
+
+/// For the operator: the scan `other_id` shows the pin elsewhere.
+[[nodiscard]] std::string moved_pin(const std::string& pin, int other_id, double off_mm);
+
+}  // namespace dubsar
