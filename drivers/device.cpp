@@ -10,6 +10,7 @@
 #include "core/utf8.h"
 #include "drivers/abi.h"
 #include "drivers/driver.h"
+#include "drivers/driver_call.h"
 
 namespace dubsar {
 
@@ -146,10 +147,15 @@ std::string taken_by(const SettingInfo& setting) {
 
 Device::Device(const dubsar_driver* driver, dubsar_device* device, std::string uri)
     : driver_(driver),
-      device_(device, [driver](dubsar_device* open) { driver->close(open); }),
+      device_(device,
+              [driver, uri](dubsar_device* open) {
+                const DriverCall call(uri);
+                driver->close(open);
+              }),
       uri_(std::move(uri)) {}
 
 Result<DeviceCapabilities> Device::capabilities() const {
+  const DriverCall call(uri_);
   auto lent = abi::lent<dubsar_capabilities>();
   auto error = abi::lent<dubsar_error>();
   if (const std::int32_t code = driver_->capabilities(device_.get(), &lent, &error); code != DUBSAR_OK) {
@@ -167,6 +173,7 @@ Result<std::vector<SettingInfo>> Device::settings() const {
   if (driver_->describe_settings == nullptr) {
     return out;
   }
+  const DriverCall call(uri_);
   auto error = abi::lent<dubsar_error>();
   const auto collect = [](void* user, const dubsar_setting* setting) noexcept -> std::int32_t {
     static_cast<std::vector<SettingInfo>*>(user)->push_back(abi::setting_from(abi::taken(setting)));
@@ -189,6 +196,7 @@ Result<SettingValue> Device::get(const std::string& key) const {
     return fail(ErrorKind::kUsage, "no setting " + key + " to read", uri_,
                 keys_of(*all, &SettingInfo::readable));
   }
+  const DriverCall call(uri_);
   auto value = abi::lent<dubsar_value>();
   auto error = abi::lent<dubsar_error>();
   if (const std::int32_t code = driver_->get_setting(device_.get(), key.c_str(), &value, &error);
@@ -233,6 +241,7 @@ Status Device::set(const std::string& key, const SettingValue& value) {
   } else {
     std::ranges::copy(std::get<std::string>(value), passed.text);
   }
+  const DriverCall call(uri_);
   auto error = abi::lent<dubsar_error>();
   const std::int32_t code = driver_->set_setting(device_.get(), key.c_str(), &passed, &error);
   return abi::status_from(code, error, uri_);
@@ -262,6 +271,7 @@ Status Device::place(const Placement& placement) {
     passed.has_free_pose = 1;
     std::ranges::copy(placement.free_pose->row_major(), passed.stage_from_scanner);
   }
+  const DriverCall call(uri_);
   auto error = abi::lent<dubsar_error>();
   const std::int32_t code = driver_->place(device_.get(), &passed, &error);
   return abi::status_from(code, error, uri_);
@@ -275,6 +285,7 @@ Status Device::stop() const {
   if (!can_stop()) {
     return {};
   }
+  const DriverCall call(uri_);
   auto error = abi::lent<dubsar_error>();
   const std::int32_t code = driver_->stop(device_.get(), &error);
   return abi::status_from(code, error, uri_);
@@ -286,7 +297,10 @@ Result<ScanOutcome> Device::scan(ProfileSink& sink) {
       sizeof(dubsar_sink),   0, &bridge, &SinkBridge::on_begin, &SinkBridge::on_profile, &SinkBridge::on_end,
       &SinkBridge::on_remark};
   auto error = abi::lent<dubsar_error>();
-  const std::int32_t code = driver_->scan(device_.get(), &passed, &error);
+  const std::int32_t code = [&] {
+    const DriverCall call(uri_);
+    return driver_->scan(device_.get(), &passed, &error);
+  }();
   if (bridge.begun && !bridge.ended) {
     sink.end({});
   }

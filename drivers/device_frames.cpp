@@ -7,6 +7,7 @@
 #include "drivers/abi.h"
 #include "drivers/device.h"
 #include "drivers/driver.h"
+#include "drivers/driver_call.h"
 
 namespace dubsar {
 
@@ -40,6 +41,7 @@ Status Device::start_frames(std::uint32_t pool) {
   if (start == nullptr) {
     return no_camera(uri_);
   }
+  const DriverCall call(uri_);
   auto error = abi::lent<dubsar_error>();
   const std::int32_t code = start(device_.get(), pool, &error);
   return abi::status_from(code, error, uri_);
@@ -50,6 +52,7 @@ Result<std::optional<Frame>> Device::next_frame(std::chrono::milliseconds timeou
   if (next == nullptr) {
     return no_camera(uri_);
   }
+  const DriverCall call(uri_);
   auto lent = abi::lent<dubsar_frame>();
   auto error = abi::lent<dubsar_error>();
   const auto wait = std::clamp<std::int64_t>(timeout.count(), 0, std::numeric_limits<std::int32_t>::max());
@@ -74,6 +77,7 @@ Status Device::stop_frames() {
   if (stop == nullptr) {
     return no_camera(uri_);
   }
+  const DriverCall call(uri_);
   auto error = abi::lent<dubsar_error>();
   const std::int32_t code = stop(device_.get(), &error);
   return abi::status_from(code, error, uri_);
@@ -84,6 +88,7 @@ Result<FrameCounters> Device::frame_counters() const {
   if (count == nullptr) {
     return no_camera(uri_);
   }
+  const DriverCall call(uri_);
   auto lent = abi::lent<dubsar_frame_counters>();
   auto error = abi::lent<dubsar_error>();
   if (const std::int32_t code = count(device_.get(), &lent, &error); code != DUBSAR_OK) {
@@ -98,6 +103,7 @@ Status Device::trigger_frame() {
   if (trigger == nullptr) {
     return fail(ErrorKind::kUsage, "this device takes no software trigger", uri_, "let it run freely");
   }
+  const DriverCall call(uri_);
   auto error = abi::lent<dubsar_error>();
   const std::int32_t code = trigger(device_.get(), &error);
   return abi::status_from(code, error, uri_);

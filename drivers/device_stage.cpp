@@ -6,6 +6,7 @@
 #include "drivers/abi.h"
 #include "drivers/device.h"
 #include "drivers/driver.h"
+#include "drivers/driver_call.h"
 
 namespace dubsar {
 
@@ -39,6 +40,7 @@ Result<std::vector<StageAxis>> Device::axes() const {
     to.axes.push_back(std::move(*taken));
     return 0;
   };
+  const DriverCall call(uri_);
   auto error = abi::lent<dubsar_error>();
   const std::int32_t code = describe(device_.get(), collect, &collected, &error);
   if (collected.refused) {
@@ -55,6 +57,7 @@ Status Device::home() {
   if (home == nullptr) {
     return no_stage(uri_);
   }
+  const DriverCall call(uri_);
   auto error = abi::lent<dubsar_error>();
   const std::int32_t code = home(device_.get(), &error);
   return abi::status_from(code, error, uri_);
@@ -68,6 +71,7 @@ Status Device::move(const StageMove& asked) {
   if (!std::isfinite(asked.position) || !std::isfinite(asked.speed) || asked.speed < 0) {
     return fail(ErrorKind::kUsage, "a move to no position or at no speed", uri_);
   }
+  const DriverCall call(uri_);
   auto passed = abi::lent<dubsar_move>();
   passed.flags = asked.start_only ? DUBSAR_MOVE_START_ONLY : 0U;
   passed.axis = asked.axis;
@@ -83,6 +87,7 @@ Result<StageReading> Device::motion() const {
   if (read == nullptr) {
     return no_stage(uri_);
   }
+  const DriverCall call(uri_);
   auto lent = abi::lent<dubsar_motion>();
   auto error = abi::lent<dubsar_error>();
   if (const std::int32_t code = read(device_.get(), &lent, &error); code != DUBSAR_OK) {
@@ -99,6 +104,7 @@ Status Device::set_laser(std::uint32_t laser, double power) {
   if (!(power >= 0 && power <= 1)) {
     return fail(ErrorKind::kUsage, "laser power is from 0 to 1", uri_);
   }
+  const DriverCall call(uri_);
   auto error = abi::lent<dubsar_error>();
   const std::int32_t code = set(device_.get(), laser, power, &error);
   return abi::status_from(code, error, uri_);
@@ -109,6 +115,7 @@ Status Device::emergency_stop() const {
   if (halt == nullptr) {
     return no_stage(uri_);
   }
+  const DriverCall call(uri_);
   auto error = abi::lent<dubsar_error>();
   const std::int32_t code = halt(device_.get(), &error);
   return abi::status_from(code, error, uri_);

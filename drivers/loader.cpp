@@ -12,6 +12,7 @@
 
 #include "drivers/abi.h"
 #include "drivers/driver.h"
+#include "drivers/driver_call.h"
 #include "drivers/trust.h"
 
 namespace dubsar {
@@ -88,6 +89,7 @@ Result<const dubsar_driver*> load(const fs::path& path) {
   if (!trusted) {
     return std::unexpected(trusted.error());
   }
+  const DriverCall call(path.string());
   // Symbols stay to themselves, and a missing one shows now rather than in the middle of a scan.
   void* library = ::dlopen(trusted->c_str(), RTLD_NOW | RTLD_LOCAL);
   if (library == nullptr) {
@@ -121,6 +123,7 @@ Result<std::vector<SettingInfo>> Driver::options() const {
     static_cast<std::vector<SettingInfo>*>(user)->push_back(abi::setting_from(abi::taken(setting)));
     return 0;
   };
+  const DriverCall call(scheme_);
   if (const std::int32_t code = abi_->describe_options(collect, &out, &error); code != DUBSAR_OK) {
     return std::unexpected(abi::error_from(code, error, scheme_));
   }
@@ -136,6 +139,7 @@ Result<std::vector<FoundDevice>> Driver::discover() const {
         {abi::text(taken.uri), abi::text(taken.description)});
     return 0;
   };
+  const DriverCall call(scheme_);
   if (const std::int32_t code = abi_->discover(collect, &out, &error); code != DUBSAR_OK) {
     return std::unexpected(abi::error_from(code, error, scheme_));
   }
@@ -160,8 +164,11 @@ Result<Device> Driver::open(const std::string& locator,
   }
   dubsar_device* device = nullptr;
   auto error = abi::lent<dubsar_error>();
-  const std::int32_t code =
-      abi_->open(locator.c_str(), passed.data(), static_cast<std::uint32_t>(passed.size()), &device, &error);
+  const std::int32_t code = [&] {
+    const DriverCall call(uri);
+    return abi_->open(locator.c_str(), passed.data(), static_cast<std::uint32_t>(passed.size()), &device,
+                      &error);
+  }();
   if (code != DUBSAR_OK) {
     return std::unexpected(abi::error_from(code, error, uri));
   }

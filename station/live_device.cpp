@@ -22,6 +22,9 @@ void LiveSession::watch_camera(bool on) {
     on = on && !halted_;
     if (watch_ && watch_->ended()) {
       over = std::exchange(watch_, nullptr);
+      if (!busy_) {
+        device_told_.reset();
+      }
       on = on && over == nullptr;  // one that ended by itself has said why; the next call tries again
     }
     if (engine_) {
@@ -52,6 +55,26 @@ void LiveSession::change_setting(const std::string& key, const std::string& word
   if (engine_ || !watch_ || !watch_->change({key, word})) {
     state_.notice = kNotSet;
   }
+}
+
+void LiveSession::take_device() {
+  std::shared_ptr<CameraWatch> watch;
+  {
+    const std::scoped_lock lock(mutex_);
+    watch = std::exchange(watch_, nullptr);
+    if (watch) {
+      tell_device();
+    }
+  }
+  watch.reset();  // the device is the job's
+  const std::scoped_lock lock(mutex_);
+  if (!job_->cancelled()) {
+    device_told_.reset();
+  }
+}
+
+void LiveSession::tell_device() {
+  device_told_ = device_told_.value_or(std::chrono::steady_clock::now());
 }
 
 SettingWords LiveSession::known_settings() {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "station/device_patience.h"
 #include "station/packing.h"
 #include "station/signing.h"
 
@@ -21,6 +22,10 @@ LiveSession::~LiveSession() {
     }
   }
   stop();
+  std::optional<DevicePatience> patience;
+  if (options_.given_up) {
+    patience.emplace([] { return true; }, nullptr, options_.given_up);
+  }
   {
     const std::scoped_lock lock(mutex_);
     later_.clear();
@@ -35,7 +40,10 @@ LiveSession::~LiveSession() {
 
 LiveState LiveSession::state() const {
   const std::scoped_lock lock(mutex_);
-  return state_;
+  LiveState out = state_;
+  const auto silent = device_told_ ? silent_device(*device_told_, kSilentAfter) : std::nullopt;
+  out.silence = silent ? std::optional(silence_of(*silent)) : std::nullopt;
+  return out;
 }
 
 GrowingRows LiveSession::look_at_growing(std::uint64_t scan, int known) {
@@ -112,14 +120,10 @@ void LiveSession::launch(std::function<void()> job, bool error_stays) {
       state_.error.reset();
     }
     state_.halted = false;
+    device_told_.reset();
   }
   worker_ = std::thread([this, first = std::move(job)] {
-    std::shared_ptr<CameraWatch> watch;
-    {
-      const std::scoped_lock lock(mutex_);
-      watch = std::exchange(watch_, nullptr);
-    }
-    watch.reset();  // the device is the job's
+    take_device();
     first();
     for (;;) {  // what was asked for meanwhile
       std::vector<OperatorCommand> commands;
@@ -151,6 +155,7 @@ void LiveSession::launch(std::function<void()> job, bool error_stays) {
         if ((commands.empty() && waits) || job_->cancelled()) {
           state_.phase = LivePhase::kStill;
           state_.stage.clear();
+          device_told_.reset();
           busy_ = false;
           break;
         }
@@ -217,6 +222,9 @@ void LiveSession::stop() {
   if (job_) {
     job_->cancel();
   }
+  if (busy_) {
+    tell_device();
+  }
   hurry();
 }
 
@@ -225,6 +233,9 @@ void LiveSession::halt() {
   scan_later_ = false;
   halted_ = looks_;
   state_.halted = busy_;
+  if (busy_ || watch_) {
+    tell_device();
+  }
   if (engine_) {
     engine_->halt();
     return;
@@ -336,6 +347,9 @@ void LiveSession::run_engine(std::vector<OperatorCommand> first, bool first_scan
     engine_ = engine;
     job = job_.get();
     state_.phase = LivePhase::kOpening;
+    if (!job->cancelled()) {  // an emergency stop was of the run before
+      device_told_.reset();
+    }
     finish_asked_ = false;
     state_.next.reset();
     state_.signed_off = false;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <atomic>
+#include <chrono>
 #include <deque>
 #include <filesystem>
 #include <functional>
@@ -31,13 +32,16 @@ class LiveSession {
     std::filesystem::path session;
     std::optional<PinSet> pins;
     bool is_device_asked = true;  ///< else a session that is there goes on with its own
+    /// Ends the program, from another thread, where closing waits for a device that has not answered for
+    /// kGivenUpAfter (device_patience.h). None: closing waits for as long as it takes.
+    std::function<void(const Error&)> given_up{};
   };
 
   /// `on_change` is called on other threads whenever there is something new to show; of the profiles of a
   /// scan, once until look_at_growing() has seen them.
   LiveSession(Options options, std::function<void()> on_change);
   /// Stops what is under way in good order; what came of a scan under way is kept (of a device;
-  /// a recorded scan is read again).
+  /// a recorded scan is read again). A driver that does not come back: Options::given_up.
   ~LiveSession();
   LiveSession(const LiveSession&) = delete;
   LiveSession& operator=(const LiveSession&) = delete;
@@ -86,7 +90,9 @@ class LiveSession {
  private:
   /// `error_stays`: of a job that mends nothing, what ended the one before is still to be read.
   void launch(std::function<void()> job, bool error_stays = false);
-  void hurry();  ///< under the mutex: something was asked for, what nobody waits for ends
+  void hurry();        ///< under the mutex: something was asked for, what nobody waits for ends
+  void tell_device();  ///< under the mutex: from now on the device is waited for
+  void take_device();  ///< of a job that begins: from whoever looks through its camera
   /// The job of work that nobody waits for; null where something else is wanted already.
   [[nodiscard]] std::shared_ptr<JobContext> begin_unasked();
   /// Such work: the model of these scans, or on the mesh that is shown what is red and
@@ -134,16 +140,17 @@ class LiveSession {
   std::optional<std::chrono::steady_clock::time_point> unseen_since_;  ///< of profiles
   std::shared_ptr<Engine> engine_;                                     ///< while it runs
   std::shared_ptr<JobContext> job_;
-  std::shared_ptr<JobContext> unasked_;       ///< work that nobody waits for, while there is some
-  std::function<void()> next_;                ///< a job that was asked for meanwhile
-  std::deque<OperatorCommand> later_;         ///< asked for while a job ran that takes none
-  bool scan_later_ = false;                   ///< likewise
-  bool finish_asked_ = false;                 ///< of the run under way
-  bool looks_ = false;                        ///< somebody, through the camera
-  bool halted_ = false;                       ///< until they look no more: looking lights a rig's laser
-  std::optional<TabletRecord> record_later_;  ///< likewise
-  std::optional<TabletRecord> record_told_;   ///< the last that the run under way was told of
-  std::optional<SettingWords> settings_;      ///< of the device, kept and changed; nothing: not read yet
+  std::shared_ptr<JobContext> unasked_;  ///< work that nobody waits for, while there is some
+  std::function<void()> next_;           ///< a job that was asked for meanwhile
+  std::deque<OperatorCommand> later_;    ///< asked for while a job ran that takes none
+  bool scan_later_ = false;              ///< likewise
+  bool finish_asked_ = false;            ///< of the run under way
+  bool looks_ = false;                   ///< somebody, through the camera
+  bool halted_ = false;                  ///< until they look no more: looking lights a rig's laser
+  std::optional<std::chrono::steady_clock::time_point> device_told_;  ///< to stop, or to be given back
+  std::optional<TabletRecord> record_later_;                          ///< likewise
+  std::optional<TabletRecord> record_told_;  ///< the last that the run under way was told of
+  std::optional<SettingWords> settings_;     ///< of the device, kept and changed; nothing: not read yet
   std::shared_ptr<const CameraView> camera_;
   std::shared_ptr<CameraWatch> watch_;
   std::atomic<bool> busy_ = false;

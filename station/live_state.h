@@ -99,6 +99,8 @@ struct LiveState {
   std::filesystem::path package;       ///< of the session as it stands, made or found here; empty: none
   std::optional<Error> error;          ///< what ended the last run or job
   bool halted = false;                 ///< the emergency stop was pressed in the run or job that goes on
+  /// The device was told to stop, or to be given back, and does not answer (device_patience.h).
+  std::optional<Error> silence;
   std::string notice;  ///< what the operator should know; empty when a later scan has made it old
   TabletRecord record;
   /// Else the session could not be written to when `record` was said.

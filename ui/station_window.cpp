@@ -137,6 +137,7 @@ class StationWindow {
     ui_.still = script_.has_value();
     kept_ = ui_.preferences;
     pins_ = options.pins;
+    given_up_ = options.given_up;
     looks_ = !options.mesh.empty();
     viewing_ = std::make_unique<MeshViewing>(wake_window);
     if (looks_) {
@@ -151,8 +152,8 @@ class StationWindow {
       return;
     }
     const bool is_asked = !options.device.empty();
-    open_session(
-        {is_asked ? options.device : ui_.preferences.device, options.session, options.pins, is_asked});
+    open_session({is_asked ? options.device : ui_.preferences.device, options.session, options.pins, is_asked,
+                  given_up_});
   }
 
   Result<int> run(const JobContext& job) {
@@ -228,7 +229,7 @@ class StationWindow {
     if (pins) {
       pins->tips.clear();  // those were of the scans of another tablet
     }
-    open_session({session_->device(), *folder, pins, false});
+    open_session({session_->device(), *folder, pins, false, given_up_});
   }
 
   bool draw_frame() {
@@ -350,6 +351,7 @@ class StationWindow {
   bool seen_ = false;                    ///< a mesh in the viewer
   bool looks_ = false;                   ///< the viewer; else the operator's screen
   std::optional<PinSet> pins_;           ///< that the window was opened with
+  std::function<void(const Error&)> given_up_;
   // The screens go before the context does.
   std::unique_ptr<LiveSession> session_;
   std::unique_ptr<MeshViewing> viewing_;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
 
@@ -16,10 +17,11 @@ struct StationWindowOptions {
   std::filesystem::path session;
   std::string device;  ///< URI; empty: the one used last
   std::optional<PinSet> pins;
-  std::filesystem::path mesh;        ///< looks at this mesh; no session then
-  std::filesystem::path other_mesh;  ///< beside it
-  std::filesystem::path script;      ///< plays it (docs/operators/window_scripts.md)
-  std::string language;              ///< "en", "de"; empty: as chosen last
+  std::filesystem::path mesh;                    ///< looks at this mesh; no session then
+  std::filesystem::path other_mesh;              ///< beside it
+  std::filesystem::path script;                  ///< plays it (docs/operators/window_scripts.md)
+  std::string language;                          ///< "en", "de"; empty: as chosen last
+  std::function<void(const Error&)> given_up{};  ///< LiveSession::Options::given_up
   int width = 1366;
   int height = 768;
 };

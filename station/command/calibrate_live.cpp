@@ -17,6 +17,7 @@
 #include "station/calibration_run.h"
 #include "station/command/calibrate.h"
 #include "station/command/command.h"
+#include "station/command/device_wait.h"
 #include "station/command/option_checks.h"
 #include "station/command/terminal.h"
 
@@ -132,6 +133,7 @@ Result<std::string> take_pictures(const LiveOptions& options, const std::string&
     return fail(ErrorKind::kUsage, "nobody says what board it is", options.rig,
                 "say --board, such as chessboard:9x6:25 or charuco:9x7:5:3.7");
   }
+  const DevicePatience patience = patience_with_device(context);
   const DriverRegistry registry;
   Result<RigParts> parts = open_rig_parts(options.rig, registry);
   if (!parts) {

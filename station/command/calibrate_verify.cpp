@@ -5,6 +5,7 @@
 #include <cstdio>
 
 #include "station/command/calibrate.h"
+#include "station/command/device_wait.h"
 #include "station/command/terminal.h"
 #include "station/verification.h"
 
@@ -50,6 +51,7 @@ void add_verify_options(CLI::App& verb, VerifyOptions& options) {
 
 Result<int> verify_rig(const VerifyOptions& options, const std::string& scan, CommandContext& context) {
   outlive_readers();
+  const DevicePatience patience = patience_with_device(context);
   const Result<VerifyOutcome> outcome =
       verify_rig(VerifyRequest{options.artefact, scan, options.calibration}, context.job);
   if (!outcome) {

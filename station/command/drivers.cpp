@@ -11,6 +11,7 @@
 
 #include "drivers/loader.h"
 #include "station/command/command.h"
+#include "station/command/device_wait.h"
 
 namespace dubsar {
 
@@ -59,6 +60,7 @@ std::string bounds_of(const nlohmann::ordered_json& option) {
 }
 
 Result<int> list_drivers(CommandContext& context) {
+  const DevicePatience patience = patience_with_device(context);
   const DriverRegistry registry;
   nlohmann::ordered_json drivers = nlohmann::ordered_json::array();
   for (const Driver& driver : registry.drivers()) {

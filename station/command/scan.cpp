@@ -23,6 +23,7 @@
 #include "formats/red_map_json.h"
 #include "formats/rig_limits_json.h"
 #include "station/command/command.h"
+#include "station/command/device_wait.h"
 #include "station/command/option_checks.h"
 #include "station/command/scan_warnings.h"
 #include "station/command/size_option.h"
@@ -241,6 +242,7 @@ Result<int> scan(const ScanArguments& arguments, CommandContext& context) {
   show_progress(false);
   outlive_readers();
   Narrator narrator;
+  const DevicePatience patience = patience_with_device(context);
   Engine engine(std::move(options), [&narrator](const Event& event) { narrator(event); });
   const Result<EngineResult> result = engine.run(context.job);
   if (!result) {

@@ -6,6 +6,7 @@
 
 #include "formats/pins_json.h"
 #include "station/command/command.h"
+#include "station/command/device_wait.h"
 #include "station/command/option_checks.h"
 #include "station/command/size_option.h"
 #include "ui/station_window.h"
@@ -38,6 +39,8 @@ Result<int> open_station(const StationArguments& arguments, CommandContext& cont
   }
   show_progress(false);
   outlive_readers();
+  options.given_up = [json = context.json](const Error& error) { end_without_device(error, json); };
+  const DevicePatience patience = patience_with_device(context);
   const Result<int> status = ui::run_station_window(options, context.job);
   if (status && context.json) {
     CommandContext::print({{"session", arguments.session}, {"status", *status}});

@@ -11,6 +11,8 @@
 #include <memory>
 #include <mutex>
 
+#include "station/command/device_wait.h"
+
 namespace dubsar {
 
 namespace {
@@ -21,6 +23,7 @@ std::atomic<bool> g_progress_on{true};
 bool g_ends_with_terminal = false;
 
 extern "C" void on_interrupt(int signal_number) {
+  end_if_told();
   JobContext* job = g_job.load();
   // Only a person insists. What ends a login, a service or a time limit sends SIGTERM and SIGHUP at once and
   // more than once, in whatever order they are delivered.

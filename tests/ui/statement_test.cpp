@@ -8,6 +8,8 @@
 #include <regex>
 #include <string>
 
+#include "station/device_patience.h"
+
 namespace dubsar::ui {
 namespace {
 
@@ -56,6 +58,30 @@ TEST(Statement, HandsOffWhileTheScannerWorks) {
     EXPECT_TRUE(s.may_stop);
     EXPECT_THAT(s.headline + s.detail, HasSubstr("Hands off"));
     EXPECT_EQ(s.may_halt, phase != LivePhase::kJudging) << "nothing moves while it computes";
+  }
+}
+
+/// Whatever it was doing, and whatever was pressed.
+TEST(Statement, AScannerThatDoesNotAnswerIsStoppedByHand) {
+  for (const LivePhase phase : {LivePhase::kOpening, LivePhase::kScanning, LivePhase::kMeasuring}) {
+    for (const bool halted : {false, true}) {
+      LiveState state = with_scan(PoseStatus::kRegistered);
+      state.phase = phase;
+      state.halted = halted;
+      state.silence = silence_of("rig:museum.toml");
+      const Statement english = statement_of(state, true, Language::kEnglish);
+      EXPECT_EQ(english.tone, Tone::kBad);
+      EXPECT_THAT(english.headline,
+                  HasSubstr("The device does not answer: stop the laser and the stage by hand"));
+      EXPECT_THAT(english.detail, HasSubstr("What was stored is safe; close the window"));
+      EXPECT_FALSE(english.may_scan);
+      EXPECT_FALSE(english.may_undo);
+      EXPECT_EQ(english.may_halt, !halted) << "it may still be pressed";
+      const Statement german = statement_of(state, true, Language::kGerman);
+      EXPECT_THAT(german.headline,
+                  HasSubstr("Das Gerät antwortet nicht: Laser und Antrieb von Hand abschalten"));
+      EXPECT_THAT(german.detail, HasSubstr("das Fenster schließen: das Programm endet dann binnen 10 s"));
+    }
   }
 }
 

@@ -87,6 +87,9 @@ void OperatorScreen::take_state(UiContext& ui) {
   if (state_.red_map && state_.red_map->conclusive) {
     ui.facts.insert("conclusive");
   }
+  if (state_.silence) {
+    ui.facts.insert("device-silent");
+  }
   if (ui.preferences.language == Language::kGerman) {
     ui.facts.insert("german-words");
   }

@@ -353,6 +353,14 @@ Statement statement_of(const LiveState& state, bool has_device, Wording wording)
     out.tone = Tone::kHandsOff;
     out.headline = text_of(headline, language);
   };
+  if (state.silence) {  // whatever it was asked for
+    out.tone = Tone::kBad;
+    out.headline = capitalised(translated(state.silence->what, language));
+    out.detail = sentence(state.silence->mend, language);
+    out.may_undo = false;
+    out.may_halt = !state.halted;
+    return out;
+  }
   if (state.halted && state.phase != LivePhase::kStill) {  // its pages are still made, perhaps
     out.tone = Tone::kBad;
     out.headline = text_of(Text::kHalted, language);

@@ -102,6 +102,11 @@ constexpr EnginePhrase kDrivers[] = {
     {"true or false", "true oder false"},
     {"there is rate", "es gibt rate"},
     {"' is none", "' gibt es nicht"},
+    // one that does not come back
+    {"the device does not answer: stop the laser and the stage by hand, or pull their plugs",
+     "das Gerät antwortet nicht: Laser und Antrieb von Hand abschalten oder Stecker ziehen"},
+    {"what was stored is safe; close the window: the program then ends within ",
+     "was gespeichert ist, ist sicher; das Fenster schließen: das Programm endet dann binnen "},
     // the simulated scanner
     {"nothing stands between sim: and its options", "zwischen sim: und seinen Optionen steht nichts"},
     {"a motor does not answer, half way there", "ein Motor antwortet nicht, auf halbem Weg"},

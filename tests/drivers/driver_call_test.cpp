@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#include "drivers/driver_call.h"
+
+#include <gtest/gtest.h>
+
+#include <thread>
+
+#include "build_paths.h"
+#include "drivers/loader.h"
+
+namespace dubsar {
+namespace {
+
+TEST(DriverCall, TheOneThatBeganFirstIsTold) {
+  EXPECT_FALSE(longest_driver_call());
+  {
+    const DriverCall rig("rig:museum.toml");
+    const auto before = longest_driver_call();
+    ASSERT_TRUE(before);
+    std::jthread([] {
+      const DriverCall camera("v4l2:/dev/video0");
+      ASSERT_TRUE(longest_driver_call());
+      EXPECT_EQ(longest_driver_call()->device, "rig:museum.toml");
+    }).join();
+    EXPECT_EQ(longest_driver_call()->since, before->since);
+  }
+  EXPECT_FALSE(longest_driver_call());
+}
+
+/// What is known while its rows come.
+class Looker : public ProfileSink {
+ public:
+  bool begin(const ScanInfo& /*info*/) override { return true; }
+  bool profile(const Profile& /*profile*/) override {
+    const auto call = longest_driver_call();
+    device = call ? call->device : std::string();
+    return false;
+  }
+  void end(const ScanTally& /*tally*/) override {}
+  std::string device;
+};
+
+TEST(DriverCall, AScanIsOneForAsLongAsItLasts) {
+  const DriverRegistry registry({DUBSAR_BINARY_DIR "/lib/dubsar/test_drivers/example"});
+  const Result<const Driver*> plate = registry.find("plate");
+  ASSERT_TRUE(plate) << plate.error().line();
+  {
+    Result<Device> device = (*plate)->open("1", {});
+    ASSERT_TRUE(device) << device.error().line();
+    EXPECT_FALSE(longest_driver_call()) << "it is open, and asked for nothing";
+    Looker looker;
+    EXPECT_FALSE(device->scan(looker));
+    EXPECT_EQ(looker.device, "plate:1");
+  }
+  EXPECT_FALSE(longest_driver_call());
+}
+
+}  // namespace
+}  // namespace dubsar
