@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "core/number_text.h"
+#include "core/parallel.h"
 #include "planning/clearing.h"
 #include "planning/model_faces.h"
 #include "planning/sparse_flags.h"
@@ -77,6 +78,31 @@ void warn_of_coarse_scans(std::span<const PlacedScan> scans, Checklist& list) {
   }
 }
 
+/// What only a scan much noisier than the others saw is worth as little as that scan, and its pose does not
+/// show it.
+void warn_of_noisy_scans(std::span<const PlacedScan> scans, Checklist& list) {
+  constexpr double kMuchNoisier = 3.0;
+  constexpr double kLeastInSpacings = 0.1;  ///< what scatters less is as good as any
+  std::vector<double> noise_mm(scans.size());
+  parallel_for_each_index(
+      scans.size(), [&](std::size_t s) { noise_mm[s] = noise_of(scans[s]); }, 1);
+  for (std::size_t s = 0; s < scans.size(); ++s) {
+    std::vector<double> others_mm(noise_mm);
+    others_mm.erase(others_mm.begin() + static_cast<std::ptrdiff_t>(s));
+    if (others_mm.size() < 2) {
+      return;
+    }
+    const auto middle = others_mm.begin() + static_cast<std::ptrdiff_t>(others_mm.size() / 2);
+    std::ranges::nth_element(others_mm, middle);
+    if (noise_mm[s] > std::max(kMuchNoisier * *middle, kLeastInSpacings * spacing_of(*scans[s].grid))) {
+      list.warnings.push_back(
+          {scans[s].id, "its samples scatter by " + fixed_text(1000 * noise_mm[s], 0) +
+                            " µm, half of the other scans by no more than " + fixed_text(1000 * *middle, 0) +
+                            " µm: clay that it alone saw is as noisy; take it out and scan that anew"});
+    }
+  }
+}
+
 }  // namespace
 
 Checklist make_checklist(const RedMap& map, std::span<const ScanPose> poses,
@@ -100,6 +126,7 @@ Checklist make_checklist(const RedMap& map, std::span<const ScanPose> poses,
   }
   add_regions(map, list);
   warn_of_coarse_scans(once, list);
+  warn_of_noisy_scans(once, list);
   return list;
 }
 

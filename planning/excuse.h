@@ -27,7 +27,8 @@ struct ExcuseOptions {
   double speck_spacings2 = 10.0;
   double speck_budget = 2e-4;  ///< of the surface, for all specks together
   int speck_tries = 2;
-  double largest_slit_mm2 = 0.5;  ///< half the footprint of the smallest wedge, 1 mm across
+  double tried_speck_budget = 1e-3;  ///< of the surface, for all that are settled by looks together
+  double largest_slit_mm2 = 0.5;     ///< half the footprint of the smallest wedge, 1 mm across
   int tries = 4;  ///< scans, from so many places, that ought to have seen a place before it is given up
 };
 
@@ -39,8 +40,10 @@ struct ExcuseOptions {
 void excuse_unneeded(std::span<const PlacedScan> scans, const SurfaceCover& cover, double noise_mm,
                      const ExcuseOptions& options, RedTargets& red);
 
-/// Unneeded: specks, groups of red that cover no more than speck_spacings2 µ² and are no wider than
-/// largest_gap_mm: those that speck_tries scans, each from elsewhere, looked at and found nothing more; and
+/// Unneeded: specks, groups of red (as red_regions() groups them, but no wider gaps across) that cover no
+/// more than speck_spacings2 µ², are no wider than largest_gap_mm, and border neither a hole of the cover
+/// that is larger nor a patch that nobody has seen: those that speck_tries scans, each from elsewhere, looked
+/// at and found nothing more, the smallest first, as long as they are together below tried_speck_budget; and
 /// the last ones, when all that is still red is, together, below speck_budget of the tablet's surface, where
 /// a straight line closes them: the rule of 3µ lets gaps of that size pass anywhere. surface_mm2: of the
 /// tablet. The targets' tries must be known (note_tries()).

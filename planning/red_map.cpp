@@ -7,6 +7,7 @@
 #include "core/parallel.h"
 #include "planning/apart.h"
 #include "planning/clearing.h"
+#include "planning/count_once.h"
 #include "planning/red_regions.h"
 #include "planning/rim_targets.h"
 #include "planning/surface_cover.h"
@@ -103,7 +104,9 @@ Result<RedMapResult> make_red_map(std::span<const PlacedScan> scans, const Mesh*
   excuse_tried(scans, cover, surface_mm2, options.excuse, out.targets);
   job.progress("red map", 0.5);
 
-  Result<NextViews> views = plan_views(scans, surface, out.targets, rig, median_noise_mm, options, job);
+  RedTargets counted = out.targets;
+  count_once(scans, cover.reach_mm(), counted);
+  Result<NextViews> views = plan_views(scans, surface, counted, rig, median_noise_mm, options, job);
   if (!views) {
     return std::unexpected(views.error());
   }
@@ -112,6 +115,10 @@ Result<RedMapResult> make_red_map(std::span<const PlacedScan> scans, const Mesh*
   }
   excuse_tried_out(scans, cover, *views, surface_mm2, options.excuse, out.targets);
   excuse_last_specks(scans, cover, views->best_gain_mm2, surface_mm2, options.excuse, out.targets);
+  // What is excused was judged by all that borders it, to be on the safe side; stated is what is missing.
+  for (std::size_t i = 0; i < counted.targets.size(); ++i) {
+    out.targets.targets[i].area_mm2 = counted.targets[i].area_mm2;
+  }
   for (const RedSampleRef& ref : out.targets.samples) {
     if (out.targets.targets[ref.target].state == RegionState::kExcused) {
       out.flags[ref.scan][ref.sample] |= kExcused;

@@ -15,9 +15,6 @@ namespace dubsar {
 
 namespace {
 
-/// Grid neighbours farther apart than this are rims of two holes, or of the object itself.
-constexpr double kGridReachMm = 5.0;
-
 /// The side of the tablet that a place lies on: that of the hull over it. Its own normal would not do: the
 /// wall of a wedge on the obverse looks to the right or to the top edge.
 Face side_at(const Eigen::Vector3d& position_mm, const Eigen::Vector3d& normal, const ModelSurface& surface) {
@@ -142,7 +139,7 @@ std::vector<RedRegion> red_regions(const RedTargets& red, std::span<const Placed
   }
   std::vector<RedRegion> regions;
   for (const auto& group :
-       cluster_targets(red, scans, 2.0 * red.cell_mm, kGridReachMm, true, 1.8 * patch_mm)) {
+       cluster_targets(red, scans, 2.0 * red.cell_mm, kRegionGridReachMm, true, 1.8 * patch_mm)) {
     for (const auto& part : parts_by_side(red, group, surface)) {
       regions.push_back(region_of(red, part, surface));
     }

@@ -10,6 +10,9 @@
 
 namespace dubsar {
 
+/// Grid neighbours farther apart than this are rims of two holes, or of the object itself.
+inline constexpr double kRegionGridReachMm = 5.0;
+
 /// Connected patches of red and of excused targets, largest first. A region's area is that of its holes: the
 /// gaps between the red samples, and the part of the closing surface (the model's convex hull) that they
 /// border, which stands for what nobody has seen. Centre and normal are means by area; the face is where most

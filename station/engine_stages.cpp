@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright The Dubsar developers
 #include "core/number_text.h"
+#include "planning/vain_scans.h"
 #include "station/engine_impl.h"
 #include "station/followed_word.h"
 #include "station/session_pages.h"
@@ -332,6 +333,7 @@ void Engine::Impl::register_all(JobContext& job) {
 }
 
 void Engine::Impl::plan_all(JobContext& job) {
+  VainScans vain;
   while (std::optional<ScanToPlan> item = queues->to_plan.pop()) {
     if (item->scan) {
       planning.add(*item->scan);
@@ -382,7 +384,13 @@ void Engine::Impl::plan_all(JobContext& job) {
       ends = end_conclusive(*red_map, *item);
     }
     item->thought.reset();
-    emit(RedMapChanged{std::move(*red_map), planning.last_gain(), ends});
+    const std::optional<ViewGain>& gain = planning.last_gain();
+    if (vain.after(*red_map, gain ? gain->predicted_mm2 : std::nullopt, gain ? gain->actual_mm2 : 0.0)) {
+      emit(
+          Notice{"three scans brought next to nothing of what is red: stop, look at it, or sign with "
+                 "--incomplete REASON"});
+    }
+    emit(RedMapChanged{std::move(*red_map), gain, ends});
     // Last: the red map waits for no mesh, and the next scan is under way meanwhile.
     if (const Status stitched = planning.stitch(job); !stitched) {
       give_up(stitched.error());

@@ -174,6 +174,30 @@ TEST_F(SurfaceQualityOfASquare, AMuchCoarserScanIsTold) {
             "1.5 mm count as sampled; take it out if that is not meant");
 }
 
+TEST_F(SurfaceQualityOfASquare, AMuchNoisierScanIsTold) {
+  add(0.1);
+  add(0.1);
+  add(0.1);
+  for (PlacedScan& scan : scans_) {
+    scan.noise_mm = 0.01;
+  }
+  scans_[1].noise_mm = 0.029;
+  ASSERT_TRUE(make_checklist({}, {}, scans_, mesh_, nullptr).warnings.empty());
+  scans_[1].noise_mm = 0.05;
+  const Checklist list = make_checklist({}, {}, scans_, mesh_, nullptr);
+  ASSERT_EQ(list.warnings.size(), 1U);
+  EXPECT_EQ(list.warnings[0].scan, scans_[1].id);
+  EXPECT_EQ(list.warnings[0].text,
+            "its samples scatter by 50 µm, half of the other scans by no more than 10 µm: clay that it alone "
+            "saw is as noisy; take it out and scan that anew");
+  // A tenth of the spacing does not matter, whatever the others do.
+  for (PlacedScan& scan : scans_) {
+    scan.noise_mm = 0.001;
+  }
+  scans_[1].noise_mm = 0.01;
+  EXPECT_TRUE(make_checklist({}, {}, scans_, mesh_, nullptr).warnings.empty());
+}
+
 TEST_F(SurfaceQualityOfASquare, FineIsFine) {
   add(0.05);
   EXPECT_EQ(quality().all.fine_share, 0.0);

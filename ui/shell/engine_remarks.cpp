@@ -101,6 +101,14 @@ constexpr EnginePhrase kRemarks[] = {
     {" mm large, perhaps its numbers are ", " mm groß, vielleicht sind seine Zahlen in "},
     {"dubsar mesh convert --unit ", "noch einmal in Millimetern ausgeben, nicht in "},
     {" makes millimetres of them", ""},
+    // what the checklist warns of, and when to stop
+    {"its samples scatter by ", "seine Messpunkte streuen um "},
+    {" µm, half of the other scans by no more than ", " µm, die Hälfte der anderen Scans um höchstens "},
+    {" µm: clay that it alone saw is as noisy; take it out and scan that anew",
+     " µm: Ton, den nur er sah, ist ebenso verrauscht; ihn entfernen und dort neu scannen"},
+    {"three scans brought next to nothing of what is red: stop, look at it, or sign with --incomplete REASON",
+     "drei Scans haben fast nichts von dem gebracht, was rot ist: aufhören, es ansehen, oder als "
+     "unvollständig unterschreiben"},
 };
 
 }  // namespace
