@@ -80,8 +80,8 @@ std::optional<ScanModel::Fault> ScanModel::fault_of(int id) {
   }
   // Bands of another tablet lie each where they fit best, too.
   const std::string or_another = sure(fit, options_.search.verify) ? "" : "; or it is of another tablet";
-  // Rows that drift apart one by one look as if something had moved, too. A slip sideways looks sheared in its
-  // turn: one of 0.9 mm in a scan of 24 mm by 4.8 %, where a stage 2 degrees out of square shears by 3.5.
+  // Rows that drift apart one by one look as if something had moved, too. A slip sideways looks sheared in
+  // its turn: one of 0.9 mm in a scan of 24 mm by 4.8 %, where a stage 2 degrees out of square shears by 3.5.
   constexpr double kMostDrift = 0.04;
   const std::optional<ScanStretch> stretch = find_stretch(surface, model, fit);
   const bool slipped = stretch && stretch->is_rather_sheared() && std::abs(stretch->shear) > kMostDrift;
