@@ -98,10 +98,16 @@ FoundPose search_pose(const ScanSurface& scan, std::span<const ModelScan> model,
     return found.verdict.status != PoseStatus::kRegistered && second_look && !job.cancelled() &&
            second_look(found);
   };
+  const auto is_near = [&](const ModelFit& fit, const std::vector<RigidTransform>& poses) {
+    return std::ranges::any_of(poses, [&](const RigidTransform& pose) {
+      return same_pose(fit.model_from_scanner, pose, scan.centroid_mm, options.told_turn_rad,
+                       options.told_mm);
+    });
+  };
   // Only of what would be accepted by its relief: it costs fits of the scans on themselves.
   const auto ask_relief = [&](std::vector<ModelFit>& fits) {
     for (ModelFit& fit : fits) {
-      if (relief_repeats && !fit.told && sure(fit, options.verify)) {
+      if (relief_repeats && !fit.told && sure(fit, options.verify) && !is_near(fit, hints.named)) {
         fit.repeats_turned_rad = relief_repeats(fit);
       }
     }
@@ -110,12 +116,9 @@ FoundPose search_pose(const ScanSurface& scan, std::span<const ModelScan> model,
     std::erase_if(fits,
                   [&](const ModelFit& f) { return !near_asked(f.model_from_scanner, hints, scan, options); });
     for (ModelFit& fit : fits) {
-      fit.told = hints.asked.has_value() ||
-                 std::any_of(hints.told.begin(), hints.told.end(), [&](const RigidTransform& pose) {
-                   return same_pose(fit.model_from_scanner, pose, scan.centroid_mm, options.told_turn_rad,
-                                    options.told_mm);
-                 });
-      fit.told_by_rig = hints.asked.has_value();
+      const bool by_pins = is_near(fit, hints.told);
+      fit.told = hints.asked.has_value() || by_pins;
+      fit.told_by_rig = hints.asked.has_value() && !by_pins;
     }
     ask_relief(fits);
     merge(found.fits, std::move(fits), scan, options.fit);

@@ -30,7 +30,10 @@ struct PoseSearchOptions {
 
 /// What the search is told of the scan beside its surface.
 struct PoseHints {
-  std::vector<RigidTransform> told;    ///< model_from_scanner: from labelled pins or from the operator
+  std::vector<RigidTransform> told;  ///< model_from_scanner: from labelled pins or from the operator
+  /// As places have it that carry the same names in both scans, too few of them to be told: of these poses
+  /// nobody asks whether the relief repeats.
+  std::vector<RigidTransform> named;
   std::vector<RigidTransform> starts;  ///< model_from_scanner: to be tried, no more
   /// What the motors say when the model holds a scan of the same placement: model_from_scanner, good to
   /// sigma.

@@ -246,6 +246,9 @@ PoseHints ScanModel::hints_for(const Scan& scan, const std::vector<int>& group_i
   for (std::size_t k = 0; k < matches.size(); ++k) {
     const bool told = k == 0 && pins_tell(matches);
     (told ? hints.told : hints.starts).push_back(matches[k].target_from_source);
+    if (k == 0 && !told && matches[k].labels_agree >= PinMatchOptions{}.least_labelled) {
+      hints.named.push_back(matches[k].target_from_source);
+    }
   }
   if (group_from_tablet && !hints.stage) {
     hints.asked = (*group_from_tablet * scan.nominal->tablet_from_scanner).orthonormalised();
