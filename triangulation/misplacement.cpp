@@ -79,9 +79,12 @@ class Group {
         sizes[k] = std::sqrt(3.0 * std::max(0.0, motion.dot(moments[k] * motion)));
       }
     }
-    // Nothing tells how all lie together: the mean of so many errors, and what the fewest motions differ by.
+    // Nothing tells how all lie together: the mean of so many errors, by what the fewest motions differ by or
+    // by what is told of the poses, which counts as well where the scans happen to agree.
     const double count = static_cast<double>(members_.size());
-    const double together2 = kOfMean * std::pow(median_of(sizes), 2) / (count - 1);
+    const double together2 = std::max(kOfMean * std::pow(median_of(sizes), 2) / (count - 1),
+                                      std::pow(median_of(told_mm()), 2) / count);
+    bool any_moves = false;
     for (std::size_t k = 0; k < members_.size(); ++k) {
       const double error2 = 3.0 * (moments[k] * inverse_of(k)).trace();
       if (sizes[k] > std::sqrt(3.0) * kLeastOfSpacing * scan(k).spacing_mm &&
@@ -89,14 +92,26 @@ class Group {
         const Motion motion = motions.segment<6>(at(k));
         out[members_[k]] = {{about_mm_.cast<float>(), (motion.head<3>() / arm_mm_).cast<float>(),
                              motion.tail<3>().cast<float>()},
-                            std::sqrt(kLeftOfMotion * kLeftOfMotion * sizes[k] * sizes[k] + error2),
-                            std::sqrt(together2)};
+                            std::sqrt(kLeftOfMotion * kLeftOfMotion * sizes[k] * sizes[k] + error2)};
+        any_moves = true;
       }
+    }
+    for (const std::size_t member : members_) {  // those that stay where they are are as far off together
+      out[member].together_mm = any_moves ? std::sqrt(together2) : 0;
     }
   }
 
  private:
   [[nodiscard]] const StitchSurface& scan(std::size_t k) const { return *scans_[members_[k]]; }
+  /// What is told of each pose; where nothing is, 0.
+  [[nodiscard]] std::vector<double> told_mm() const {
+    std::vector<double> out(members_.size());
+    for (std::size_t k = 0; k < members_.size(); ++k) {
+      const double told = scan(k).told_pose_sigma_mm;
+      out[k] = std::isfinite(told) ? told : 0;
+    }
+    return out;
+  }
   [[nodiscard]] static Eigen::Index at(std::size_t k) { return 6 * static_cast<Eigen::Index>(k); }
   [[nodiscard]] Eigen::Index rows() const { return at(members_.size()); }
 

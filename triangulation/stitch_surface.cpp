@@ -341,9 +341,9 @@ bool StitchSurface::take_misplacement(const Misplacement& misplacement) {
   const double before_mm =
       std::exchange(pose_sigma_mm, back.is_none() ? told_pose_sigma_mm : misplacement.left_mm);
   const auto together_mm = static_cast<float>(misplacement.together_mm);
-  together_variance_mm2 = together_mm * together_mm / 3.0F;
+  const float together_before = std::exchange(together_variance_mm2, together_mm * together_mm / 3.0F);
   pose_share = 1.0F / (1.0F + pose_variance_mm2() * weight_of_best);
-  return back != before ||
+  return back != before || together_variance_mm2 != together_before ||
          (pose_sigma_mm != before_mm && !(std::isnan(pose_sigma_mm) && std::isnan(before_mm)));
 }
 

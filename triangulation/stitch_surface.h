@@ -41,7 +41,7 @@ enum UsableBit : std::uint8_t {
 struct Misplacement {
   SmallMotion back;    ///< takes the scan to where the others have it; none: the pose is not known to be off
   double left_mm = 0;  ///< standard deviation in space, as PlacedScan::sigma_mm, of where that takes it
-  double together_mm = 0;  ///< the same of what all scans share, which no overlap tells
+  double together_mm = 0;  ///< the same of what linked scans share once one moves, which no overlap tells
 };
 
 /// One placed scan made ready for stitching: its samples in the model frame, the triangles of its grid, and

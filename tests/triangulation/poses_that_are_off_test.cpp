@@ -10,6 +10,7 @@
 #include <limits>
 #include <utility>
 
+#include "core/order_statistics.h"
 #include "core/random.h"
 #include "sim/scanner.h"
 #include "tests/triangulation/support/ball_scans.h"
@@ -145,6 +146,28 @@ TEST(PosesThatAreOff, OneHardlyMovesTheOthers) {
   EXPECT_LT(found(stitched(set), 2, 255).error_mm, 6.5 * true_mm);
   set.placed[2].sigma_mm = 0.2;  // told
   EXPECT_LT(found(stitched(set), 2, 255).error_mm, 6.5 * true_mm);
+}
+
+/// What is told of all poses holds of where they lie together, however well two scans of them agree once one
+/// was moved: no overlap shows an error that they share.
+TEST(PosesThatAreOff, WhatIsToldOfAllOfThemOutlivesTheMotionOfOne) {
+  const auto sigma_mm = [](const Eigen::Vector3d& off_mm) {
+    test::ScanSet set = ball_with_one_off(off_mm);
+    for (PlacedScan& scan : set.placed) {
+      scan.sigma_mm = 0.15;
+    }
+    const Mesh mesh = stitched(set);
+    std::vector<float> of_several;
+    for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
+      if (mesh.scans[v] > 1) {
+        of_several.push_back(mesh.sigma_mm[v]);
+      }
+    }
+    return static_cast<double>(median_of(of_several));
+  };
+  const double mean_mm = 0.15 / std::sqrt(3.0 * 6);
+  EXPECT_GT(sigma_mm({0, 0, 0}), mean_mm);
+  EXPECT_GT(sigma_mm(kOff), mean_mm) << "the motion of one took it off all";
 }
 
 TEST(PosesThatAreOff, OneThatGoesLeavesNoTrace) {
