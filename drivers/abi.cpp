@@ -3,6 +3,7 @@
 #include "drivers/abi.h"
 
 #include <cmath>
+#include <cstring>
 #include <limits>
 #include <sstream>
 
@@ -30,6 +31,13 @@ ErrorKind kind_of(std::int32_t code) {
     default:
       return ErrorKind::kDevice;
   }
+}
+
+/// A name that a driver gives a scan, of a size that it alone knows: on every page stand its first bytes, as
+/// many as a path has.
+std::string name_from(const char* text) {
+  constexpr std::size_t kMostBytes = 4096;
+  return text == nullptr ? std::string() : std::string(text, ::strnlen(text, kMostBytes));
 }
 
 Eigen::Vector3d vector_from(const double (&v)[3]) {
@@ -246,9 +254,9 @@ Result<ScanInfo> scan_info_from(const dubsar_scan_info& from, const std::string&
   }
   out.pin_tip_diameter_mm = positive_or_zero(from.pin_tip_diameter_mm);
   out.timestamp_ns = from.timestamp_ns;
-  out.device = text(from.device_id);
-  out.source = text(from.source);
-  out.file = text(from.file);
+  out.device = name_from(from.device_id);
+  out.source = name_from(from.source);
+  out.file = name_from(from.file);
   return out;
 }
 

@@ -2,8 +2,14 @@
 // Copyright The Dubsar developers
 #include "drivers/driver_call.h"
 
+#include <unistd.h>
+
+#include <cstdio>
+#include <cstdlib>
 #include <mutex>
 #include <new>
+
+#include "core/result.h"
 
 namespace dubsar {
 
@@ -20,9 +26,27 @@ Calls& calls() {
   return *kCalls;
 }
 
+/// The calls that this thread stands in.
+thread_local int calls_of_this_thread = 0;
+
+/// exit() from within a driver would end the program with whatever status the driver chose, 0 for instance:
+/// "done, and conclusive". What is stored is whole without the rest of the way out.
+void tell_of_an_exit() {
+  if (calls_of_this_thread == 0) {
+    return;
+  }
+  const std::optional<PendingCall> call = longest_driver_call();
+  const Error ended{ErrorKind::kDevice, "the driver ended the program", call ? call->device : std::string(),
+                    "what is stored is whole; update or remove the driver"};
+  std::fprintf(stderr, "dubsar: %s\n", ended.line().c_str());
+  ::_exit(exit_status(ended.kind));
+}
+
 }  // namespace
 
 DriverCall::DriverCall(const std::string& device) noexcept {
+  [[maybe_unused]] static const int kWatched = std::atexit(tell_of_an_exit);
+  ++calls_of_this_thread;
   try {
     Calls& all = calls();
     const std::scoped_lock lock(all.mutex);
@@ -33,6 +57,7 @@ DriverCall::DriverCall(const std::string& device) noexcept {
 }
 
 DriverCall::~DriverCall() {
+  --calls_of_this_thread;
   if (place_) {
     Calls& all = calls();
     const std::scoped_lock lock(all.mutex);

@@ -2,6 +2,7 @@
 // Copyright The Dubsar developers
 #include "formats/rig_toml.h"
 
+#include <array>
 #include <cmath>
 
 #include "core/units.h"
@@ -20,6 +21,13 @@ void read_scan(const JsonNode& scan, RigFile& rig) {
   scan.only({"from_mm", "to_mm", "step_mm", "speed_mm_s", "from_deg", "to_deg", "step_deg", "speed_deg_s",
              "continuous", "ambient", "laser_power"});
   const bool degrees = scan.find("step_deg").has_value();
+  for (const char* other : degrees ? std::array{"from_mm", "to_mm", "step_mm", "speed_mm_s"}
+                                   : std::array{"from_deg", "to_deg", "step_deg", "speed_deg_s"}) {
+    if (const auto both = scan.find(other)) {
+      both->complain(degrees ? "stands beside step_deg: a scan moves or turns"
+                             : "needs step_deg: without it the scan moves");
+    }
+  }
   const double unit = degrees ? rad_from_deg(1) : 1;
   const double from = scan.at(degrees ? "from_deg" : "from_mm").number(-kMostTravel, kMostTravel) * unit;
   const double to = scan.at(degrees ? "to_deg" : "to_mm").number(-kMostTravel, kMostTravel) * unit;
@@ -47,6 +55,9 @@ void read_scan(const JsonNode& scan, RigFile& rig) {
   }
   if (const auto power = scan.find("laser_power")) {
     rig.laser_power = power->number(0, 1);
+    if (rig.laser_power == 0) {
+      power->complain("is 0: nothing would be seen");
+    }
   }
 }
 

@@ -130,7 +130,8 @@ class StationWindow {
                 double opened_s)
       : window_(std::move(window)), gui_(window_.handle()), script_(std::move(script)), opened_s_(opened_s) {
     preferences_file_ = script_ ? std::filesystem::path() : preferences_file();
-    ui_.preferences = read_preferences(preferences_file_);
+    ui_.preferences = read_preferences(preferences_file_,
+                                       script_ ? Preferences() : usual_preferences(window_.content_scale()));
     if (const auto language = language_of(options.language)) {
       ui_.preferences.language = *language;
     }

@@ -66,6 +66,12 @@ TEST_F(DeviceTest, StreamsScansUntilTheSourceIsExhausted) {
   EXPECT_TRUE(sink.infos.empty());
 }
 
+TEST_F(DeviceTest, ANameOfMegabytesIsCutToTheLengthOfAPath) {
+  Recorder sink;
+  ASSERT_TRUE(open("longwinded").scan(sink));
+  EXPECT_EQ(sink.infos.at(0).device, std::string(4096, 'n'));
+}
+
 TEST_F(DeviceTest, TellsTheRig) {
   const auto capabilities = open("good").capabilities();
   ASSERT_TRUE(capabilities);

@@ -4,10 +4,12 @@
 
 #include <gtest/gtest.h>
 
+#include <cstdlib>
 #include <thread>
 
 #include "build_paths.h"
 #include "drivers/loader.h"
+#include "tests/support/in_child.h"
 
 namespace dubsar {
 namespace {
@@ -26,6 +28,22 @@ TEST(DriverCall, TheOneThatBeganFirstIsTold) {
     EXPECT_EQ(longest_driver_call()->since, before->since);
   }
   EXPECT_FALSE(longest_driver_call());
+}
+
+TEST(DriverCall, AnExitWithinOneIsAFailureOfTheDevice) {
+  EXPECT_EQ(test::in_child([] {
+              const DriverCall call("evil:1");
+              std::exit(0);
+              return 1;
+            }),
+            3);
+  EXPECT_EQ(test::in_child([] {
+              { const DriverCall call("good:1"); }
+              std::exit(5);
+              return 1;
+            }),
+            5)
+      << "none is under way";
 }
 
 /// What is known while its rows come.

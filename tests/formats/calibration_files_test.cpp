@@ -183,6 +183,10 @@ step_deg = 0.5
   EXPECT_TRUE(refused("step_deg = 0.5", "step_deg = 0"));
   EXPECT_TRUE(refused("to_deg = 90", "to_deg = -91"));
   EXPECT_TRUE(refused("to_deg", "to_mm"));
+  EXPECT_TRUE(refused("step_deg = 0.5", "step_deg = 0.5\nfrom_mm = -20")) << "it moves and turns";
+  EXPECT_TRUE(refused("step_deg = 0.5", "step_deg = 0.5\nspeed_mm_s = 5"));
+  EXPECT_TRUE(refused("step_deg = 0.5", "step_deg = 0.5\nlaser_power = 0")) << "nothing would be seen";
+  EXPECT_FALSE(refused("step_deg = 0.5", "step_deg = 0.5\nlaser_power = 0.2"));
   EXPECT_TRUE(refused("name", "nam"));
   EXPECT_TRUE(refused("\"1500\"", "1500"));
   EXPECT_TRUE(refused("[scan]", "[scann]"));

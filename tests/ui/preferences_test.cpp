@@ -55,5 +55,16 @@ TEST(Preferences, LettersWithoutASizeHaveTheUsualOne) {
   EXPECT_EQ(read_preferences(file).font_px, kLargestFontPx);
 }
 
+TEST(Preferences, LettersAreAsLargeAsTheDisplayIsSetUntilTheOperatorChooses) {
+  const test::TemporaryFolder folder;
+  const std::filesystem::path file = folder.path() / "window.conf";
+  const float usual = Preferences().font_px;
+  EXPECT_EQ(read_preferences(file, usual_preferences(1.5F)).font_px, 1.5F * usual);
+  EXPECT_EQ(read_preferences(file, usual_preferences(4)).font_px, kLargestFontPx);
+  EXPECT_EQ(read_preferences(file, usual_preferences(0)).font_px, usual);
+  test::put(file, "font_px = 20\n");
+  EXPECT_EQ(read_preferences(file, usual_preferences(1.5F)).font_px, 20);
+}
+
 }  // namespace
 }  // namespace dubsar::ui

@@ -6,6 +6,7 @@
 // epoxy first: it refuses to come after another OpenGL header.
 #include <GLFW/glfw3.h>
 
+#include <algorithm>
 #include <atomic>
 #include <utility>
 
@@ -79,6 +80,13 @@ GlWindow::~GlWindow() {
     glfwDestroyWindow(window_);
     glfwTerminate();
   }
+}
+
+float GlWindow::content_scale() const {
+  float x = 1;
+  float y = 1;
+  glfwGetWindowContentScale(window_, &x, &y);
+  return std::min(x, y);
 }
 
 void wake_window() {

@@ -23,6 +23,8 @@ class GlWindow {
 
   [[nodiscard]] GLFWwindow* handle() const { return window_; }
   [[nodiscard]] const std::string& renderer() const { return renderer_; }
+  /// How many times as large as usual its display is set to show things (2 on many of 3840 x 2160 pixels).
+  [[nodiscard]] float content_scale() const;
 
  private:
   GlWindow(GLFWwindow* window, std::string renderer);

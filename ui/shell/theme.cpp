@@ -12,6 +12,7 @@
 #include <fstream>
 #include <sstream>
 #include <system_error>
+#include <utility>
 
 #include "station/settings_file.h"
 
@@ -47,8 +48,16 @@ fs::path preferences_file() {
   return {};
 }
 
-Preferences read_preferences(const fs::path& file) {
+Preferences usual_preferences(float content_scale) {
   Preferences out;
+  if (std::isfinite(content_scale) && content_scale > 0) {
+    out.font_px = std::clamp(out.font_px * content_scale, kSmallestFontPx, kLargestFontPx);
+  }
+  return out;
+}
+
+Preferences read_preferences(const fs::path& file, Preferences usual) {
+  Preferences out = std::move(usual);
   std::ifstream in(file);
   std::string line;
   while (std::getline(in, line)) {

@@ -31,8 +31,11 @@ inline constexpr float kLargestFontPx = 32;
 
 /// $XDG_CONFIG_HOME/dubsar/window.conf, or under ~/.config; empty when there is neither.
 [[nodiscard]] std::filesystem::path preferences_file();
-/// Lines "key = value"; what is not understood is skipped.
-[[nodiscard]] Preferences read_preferences(const std::filesystem::path& file);
+/// Those of an operator who has chosen nothing yet, on a display that is set to show things so many times as
+/// large as usual (GLFW's content scale; what is no scale counts as 1).
+[[nodiscard]] Preferences usual_preferences(float content_scale);
+/// Lines "key = value"; what is not understood is skipped, and what is not there is as `usual`.
+[[nodiscard]] Preferences read_preferences(const std::filesystem::path& file, Preferences usual = {});
 /// Best effort: the window works without.
 void write_preferences(const std::filesystem::path& file, const Preferences& preferences);
 

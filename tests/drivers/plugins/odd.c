@@ -179,6 +179,11 @@ static int32_t scan(dubsar_device* device, const dubsar_sink* sink, dubsar_error
   info.tablet_from_scanner[strcmp(device->mode, "columns") == 0 ? 12 : 3] = 5;
   info.source = "odd scan";
   info.device_id = "odd 0815";
+  static char long_name[3000001];
+  if (strcmp(device->mode, "longwinded") == 0) {
+    memset(long_name, 'n', sizeof long_name - 1);
+    info.device_id = long_name;
+  }
   if (strcmp(device->mode, "late") == 0) {
     dubsar_profile stray = {.struct_size = sizeof stray, .count = 0};
     sink->profile(sink->user, &stray);
