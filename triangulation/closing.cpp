@@ -26,6 +26,7 @@ namespace {
 constexpr int kTiledRounds = 4;
 constexpr int kTries = 9;  ///< at closing what is open in one place, after those
 constexpr int kRepairs = 3;
+constexpr double kMinCreaseCos = -0.2;  ///< a little beyond a right angle, for the normals of noisy samples
 
 /// 1 for the faces that a sheet has to lose so that at each of the vertices `where` they form one fan, the
 /// largest, and no half-edge is there twice; what they lose is closed again as part of the seam. Empty when
@@ -164,6 +165,19 @@ void clear_around(Region& region, const Walks& gaps, Draft& draft) {
   region.erase(gone, draft);
 }
 
+/// What is open still may be a crack along an edge of the body, on both sides of which scans end.
+void close_over_creases(Front& front, const ClosingOptions& options, const JobContext& job) {
+  Walks openings = front.openings();
+  const LooseVertices loose(front.sheet());
+  std::erase_if(openings, [&](const auto& o) {  // a gap without room waits for a round that has it
+    return is_gap(front.sheet(), o, loose, options.gap) && !has_room(front.sheet(), o, options.seam);
+  });
+  SeamOptions seam = options.seam;
+  seam.most_gap_edge_factor = seam.most_edge_factor;
+  seam.min_crease_cos = kMinCreaseCos;
+  close_openings(front, openings, seam.least_angle_rad, seam, job);
+}
+
 struct Closed {
   std::size_t first_interpolated = 0;
   Leftover left;
@@ -180,6 +194,10 @@ Closed close_region(Region& region, const Walks& gaps, Draft& draft, const Closi
     return {};
   }
   const GapFillResult filled = fill_gaps(front, options.seam, options.gap, job);
+  if (job.cancelled()) {
+    return {};
+  }
+  close_over_creases(front, options, job);
   if (job.cancelled()) {
     return {};
   }

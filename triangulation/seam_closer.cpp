@@ -21,10 +21,14 @@ constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
 /// How far around the middle of an edge a choice looks, × the longest edge.
 constexpr float kReachOfMost = 1.25F;
 
+/// So far at least the third corner lies beyond an edge, × the edge's length.
+constexpr float kLeastFree = 1e-3F;
+
 struct Limits {
   float most_edge_factor;
   float least_sine;  ///< of the smallest angle
   float min_normal_cos;
+  float min_crease_cos;
 };
 
 float cross2(const Vector2f& a, const Vector2f& b) {
@@ -104,19 +108,20 @@ class Chooser {
       return {};
     }
 
-    flat_.resize(near_.size());
     layer_.resize(near_.size());
     candidates_.clear();
     for (std::size_t k = 0; k < near_.size(); ++k) {
       const Front::Links& near = *near_[k];
       const std::uint32_t v = near.vertex;
       const Vector3f d = near.position - pa;
-      flat_[k] = {d.dot(along), d.dot(free_side)};
-      const float height = std::abs(d.dot(n));
       const float cosine = near.normal.dot(n);
-      layer_[k] = cosine > 0.2F && height <= most ? 1 : 0;
-      if (v == a || v == b || layer_[k] == 0 || cosine < limits_.min_normal_cos ||
-          flat_[k].y() < 1e-3F * length) {
+      layer_[k] = cosine > std::min(0.2F, limits_.min_crease_cos) && std::abs(d.dot(n)) <= most ? 1 : 0;
+      if (v == a || v == b || layer_[k] == 0 || cosine < limits_.min_crease_cos) {
+        continue;
+      }
+      const bool is_crease = cosine < limits_.min_normal_cos;
+      if (is_crease ? !(d.dot(n) < 0 && d.dot(near.normal) > 0)  // around an edge, not into a corner
+                    : d.dot(free_side) < kLeastFree * length) {
         continue;
       }
       const Vector3f ca = pa - near.position;
@@ -125,14 +130,12 @@ class Chooser {
       if (longest > limits_.most_edge_factor * std::max(mu, sheet.spacing_mm[v])) {
         continue;
       }
-      candidates_.push_back({ca.dot(cb) / (ca.norm() * cb.norm()), k});
+      candidates_.push_back({ca.dot(cb) / (ca.norm() * cb.norm()), k, is_crease});
     }
     std::sort(candidates_.begin(), candidates_.end(), [&](const Candidate& x, const Candidate& y) {
       return x.cosine != y.cosine ? x.cosine < y.cosine : near_[x.at]->vertex < near_[y.at]->vertex;
     });
-    if (!candidates_.empty()) {
-      lay_segments(pa, along, free_side);
-    }
+    const Candidate* laid_for = nullptr;
     for (const Candidate& candidate : candidates_) {
       const std::uint32_t c = near_[candidate.at]->vertex;
       const Vector3f& pc = sheet.positions[c];
@@ -142,8 +145,15 @@ class Chooser {
       }
       const Vector3f face_normal = (pa - pb).cross(pc - pb).normalized();
       const Vector3f measured = (sheet.normals[a] + sheet.normals[b] + sheet.normals[c]).normalized();
-      if (face_normal.dot(measured) < limits_.min_normal_cos ||
-          blocked(a, b, c, length, flat_[candidate.at])) {
+      if (face_normal.dot(measured) < limits_.min_normal_cos) {
+        continue;
+      }
+      // Around an edge the plane lies aslant, or what is on its other side would lie upon itself.
+      if (laid_for == nullptr || candidate.is_crease || laid_for->is_crease) {
+        lay(pa, along, candidate.is_crease ? along.cross(face_normal) : free_side);
+        laid_for = &candidate;
+      }
+      if (flat_[candidate.at].y() < kLeastFree * length || blocked(a, b, c, length, flat_[candidate.at])) {
         continue;
       }
       // Short triangles first, well shaped ones before needles of the same size.
@@ -157,6 +167,7 @@ class Chooser {
   struct Candidate {
     float cosine;    ///< of the angle at the third corner
     std::size_t at;  ///< in near_
+    bool is_crease;  ///< it lies on the other side of an edge of the body
   };
 
   [[nodiscard]] bool blocked(std::uint32_t a, std::uint32_t b, std::uint32_t c, float length,
@@ -193,16 +204,22 @@ class Chooser {
     std::uint32_t v, w;
     Vector2f tail, head;
   };
-  void lay_segments(const Vector3f& origin, const Vector3f& along, const Vector3f& free_side) {
+  /// Into the plane of two axes through `origin`: what is near, and the open edges there.
+  void lay(const Vector3f& origin, const Vector3f& along, const Vector3f& free_side) {
+    const auto place_of = [&](const Vector3f& p) -> Vector2f {
+      const Vector3f d = p - origin;
+      return {d.dot(along), d.dot(free_side)};
+    };
+    flat_.resize(near_.size());
     segments_.clear();
     for (std::size_t k = 0; k < near_.size(); ++k) {
       if (layer_[k] == 0) {
         continue;
       }
+      flat_[k] = place_of(near_[k]->position);
       for (const auto* const ends : {&near_[k]->out, &near_[k]->in}) {
         for (const std::uint32_t w : *ends) {
-          const Vector3f d = front_->sheet().positions[w] - origin;
-          segments_.push_back({near_[k]->vertex, w, flat_[k], {d.dot(along), d.dot(free_side)}});
+          segments_.push_back({near_[k]->vertex, w, flat_[k], place_of(front_->sheet().positions[w])});
         }
       }
     }
@@ -336,12 +353,17 @@ class Advance {
 
 }  // namespace
 
+namespace {
+
+Limits limits_of(const SeamOptions& options, double most_edge_factor, double least_angle_rad) {
+  return {static_cast<float>(most_edge_factor), static_cast<float>(std::sin(least_angle_rad)),
+          static_cast<float>(options.min_normal_cos), static_cast<float>(options.min_crease_cos)};
+}
+
+}  // namespace
+
 std::size_t close_seams(Front& front, const SeamOptions& options, const JobContext& job) {
-  return Advance(front,
-                 {static_cast<float>(options.most_edge_factor),
-                  static_cast<float>(std::sin(options.least_angle_rad)),
-                  static_cast<float>(options.min_normal_cos)},
-                 job)
+  return Advance(front, limits_of(options, options.most_edge_factor, options.least_angle_rad), job)
       .run(front.open_edges());
 }
 
@@ -361,11 +383,7 @@ std::size_t close_openings(Front& front, const std::vector<std::vector<std::uint
       edges.push_back({loop[i], loop[(i + 1) % loop.size()]});
     }
   }
-  return Advance(front,
-                 {static_cast<float>(options.most_gap_edge_factor),
-                  static_cast<float>(std::sin(least_angle_rad)), static_cast<float>(options.min_normal_cos)},
-                 job)
-      .run(edges);
+  return Advance(front, limits_of(options, options.most_gap_edge_factor, least_angle_rad), job).run(edges);
 }
 
 }  // namespace dubsar

@@ -14,7 +14,8 @@ struct SeamOptions {
   double most_edge_factor = 2.6;      ///< × the coarser µ: longest new edge across a seam
   double most_gap_edge_factor = 4.0;  ///< the same where a small opening is closed
   double least_angle_rad = 0.21;      ///< 12°, where there is a choice
-  double min_normal_cos = 0.4;        ///< normals of a face and of its vertices
+  double min_normal_cos = 0.4;        ///< the mean normal of a face's vertices and its own
+  double min_crease_cos = 0.4;        ///< normals of an edge and of what it is joined to
 };
 
 /// Joins facing edges of the front across narrow seams: triangles between an open edge and a vertex of the

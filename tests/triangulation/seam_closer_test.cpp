@@ -85,6 +85,49 @@ TEST(SeamCloser, DoesNotBridgeADepthStep) {
   EXPECT_EQ(report_of(sheet).components, 2U);
 }
 
+/// The patches to both sides of a right angle, each of which ends a little before it; `out`: they face away
+/// from each other, around an edge, rather than into a corner.
+Sheet right_angle(bool out) {
+  constexpr double kMu = 0.2;
+  const auto plane = [](double, double) { return 0.0; };
+  RangeGrid top = test::height_grid(30, 30, kMu, plane);
+  for (std::size_t i = 0; i < top.size(); ++i) {
+    top.valid[i] = top.x[i] < -0.12F ? 1 : 0;
+  }
+  Sheet sheet;
+  Mesh mesh = triangulate_grid(top, {});
+  append(sheet, mesh, kMu);
+  for (std::size_t v = 0; v < mesh.positions.size(); ++v) {  // about the edge, x to z or to -z
+    const float depth = mesh.positions[v].x();
+    mesh.positions[v] = {0, mesh.positions[v].y(), out ? depth : -depth};
+    mesh.normals[v] = {out ? 1.0F : -1.0F, 0, 0};
+  }
+  for (Triangle& f : mesh.faces) {  // the grid's other side is outside
+    std::swap(f[1], f[2]);
+  }
+  append(sheet, mesh, kMu);
+  return sheet;
+}
+
+TEST(SeamCloser, JoinsWhatLiesAroundAnEdgeAndNotIntoACorner) {
+  SeamOptions over_creases;
+  over_creases.min_crease_cos = -0.2;
+  for (const bool out : {true, false}) {
+    Sheet sheet = right_angle(out);
+    ASSERT_EQ(report_of(sheet).components, 2U);
+    Front front(sheet);
+    EXPECT_EQ(close_seams(front, {}), 0U);
+    close_seams(front, over_creases);
+    const MeshReport report = report_of(sheet);
+    EXPECT_EQ(report.components, out ? 1U : 2U);
+    EXPECT_EQ(report.inconsistent_faces, 0U);
+    EXPECT_EQ(report.self_intersections, 0U);
+    if (out) {
+      EXPECT_EQ(report.boundary_loops, 1U);
+    }
+  }
+}
+
 TEST(GapFill, FillsAFewSamplesAndLeavesWideHoles) {
   RangeGrid grid = test::height_grid(80, 80, 0.1, [](double x, double y) { return 0.05 * (x * x + y * y); });
   const auto dig = [&](int row, int col, int radius) {
