@@ -14,11 +14,13 @@ function(dubsar_library name)
   endif()
 endfunction()
 
-# dubsar_test(NAME SOURCES a_test.cpp ... LINKS dubsar_core ... [LABEL unit] [ALONE] [WHOLE Suite ...])
+# dubsar_test(NAME SOURCES a_test.cpp ... LINKS dubsar_core ... [LABEL unit] [ALONE] [WHOLE Suite ...] [WAITS Suite ...])
 # One GoogleTest executable per module, its tests known to ctest one by one, each in a process of its own. ALONE: no other
-# test runs beside these. Suites that are WHOLE run in one process each: what they set up takes longer than their tests.
+# test runs beside these, but for suites that WAIT. Suites that are WHOLE run in one process each: what they set up takes
+# longer than their tests. Suites that WAIT for devices leave the processors to others: they come first, one test at a time,
+# beside those that compute (./test runs one test more than there are cores). WAITS * is all of them.
 function(dubsar_test name)
-  cmake_parse_arguments(ARG "ALONE" "LABEL" "SOURCES;LINKS;WHOLE" ${ARGN})
+  cmake_parse_arguments(ARG "ALONE" "LABEL" "SOURCES;LINKS;WHOLE;WAITS" ${ARGN})
   if(NOT ARG_LABEL)
     set(ARG_LABEL unit)
   endif()
@@ -29,10 +31,21 @@ function(dubsar_test name)
   if(DUBSAR_SANITIZE)
     target_compile_definitions(${name}_test PRIVATE DUBSAR_SANITIZED)
   endif()
-  list(TRANSFORM ARG_WHOLE APPEND ".*" OUTPUT_VARIABLE whole)
-  list(JOIN whole ":" whole)
-  gtest_discover_tests(${name}_test TEST_FILTER "*-${whole}" DISCOVERY_MODE PRE_TEST PROPERTIES
-    LABELS ${ARG_LABEL} TIMEOUT 300 RUN_SERIAL ${ARG_ALONE})
+  set(properties LABELS ${ARG_LABEL} TIMEOUT 300 RUN_SERIAL ${ARG_ALONE})
+  set(waiting LABELS ${ARG_LABEL} TIMEOUT 300 RESOURCE_LOCK waiting COST 1000)
+  set(apart ${ARG_WHOLE})
+  if(ARG_WAITS STREQUAL "*")
+    set(properties ${waiting})
+  elseif(ARG_WAITS)
+    list(APPEND apart ${ARG_WAITS})
+    list(TRANSFORM ARG_WAITS APPEND ".*")
+    list(JOIN ARG_WAITS ":" waits)
+    gtest_discover_tests(${name}_test TEST_FILTER "${waits}" TEST_LIST ${name}_waiting DISCOVERY_MODE PRE_TEST
+      PROPERTIES ${waiting})
+  endif()
+  list(TRANSFORM apart APPEND ".*")
+  list(JOIN apart ":" apart)
+  gtest_discover_tests(${name}_test TEST_FILTER "*-${apart}" DISCOVERY_MODE PRE_TEST PROPERTIES ${properties})
   foreach(suite ${ARG_WHOLE})
     add_test(NAME ${suite} COMMAND ${name}_test --gtest_filter=${suite}.*)
     set_tests_properties(${suite} PROPERTIES LABELS ${ARG_LABEL} TIMEOUT 900 RUN_SERIAL ${ARG_ALONE}

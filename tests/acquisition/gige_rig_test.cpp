@@ -99,7 +99,10 @@ TEST_F(GigeRig, SurvivesLostPackets) {
   EXPECT_NE(scanner.camera().tell("resent"), "0");
 }
 
-TEST_F(GigeRig, AStageThatIsUnpluggedLeavesTheRowsAndGoesOnLater) {
+/// Where the rows lie is not judged here: other tests may run beside these.
+class GigeRigUnplugged : public GigeRig {};
+
+TEST_F(GigeRigUnplugged, AStageThatIsUnpluggedLeavesTheRowsAndGoesOnLater) {
   test::GigeScanner scanner(plan_, *stage);
   ASSERT_EQ(scanner.refusal(), "");
   Result<Device> device = open(scanner);
@@ -133,7 +136,7 @@ TEST_F(GigeRig, AStageThatIsUnpluggedLeavesTheRowsAndGoesOnLater) {
   EXPECT_EQ(stage->tell("laser"), "0");
 }
 
-TEST_F(GigeRig, ACameraThatIsUnpluggedLeavesTheRowsTheLaserOffAndGoesOnLater) {
+TEST_F(GigeRigUnplugged, ACameraThatIsUnpluggedLeavesTheRowsTheLaserOffAndGoesOnLater) {
   plan_.rate_hz = 20;  // a busy machine may lose a few rows, not all of them
   test::GigeScanner scanner(plan_, *stage);
   ASSERT_EQ(scanner.refusal(), "");
@@ -209,7 +212,7 @@ TEST_F(GigeRig, PutsTheProfilesOfARangeCameraWhereTheStageWas) {
     std::ofstream(folder.path() / "rig.toml")
         << "name = 'carried'\ncamera = 'aravis:Dubsar-Range 2-SN9'\nstage = 'usb_stage:2341:0043'\n"
         << "[motion]\nkind = 'linear'\ndirection = [0, 1, 0]\n"
-        << "[scan]\nfrom_mm = -60\nto_mm = -57\nstep_mm = 0.025\n"
+        << "[scan]\nfrom_mm = -6\nto_mm = -3\nstep_mm = 0.025\n"
         << scan;
     return open_device(parse_device_uri("rig:" + (folder.path() / "rig.toml").string()).value(), registry_);
   };
@@ -244,7 +247,7 @@ TEST_F(GigeRig, PutsTheProfilesOfARangeCameraWhereTheStageWas) {
   EXPECT_LT(std::sqrt(squares / static_cast<double>(grid.valid_count())), 6);
   const auto first = static_cast<std::size_t>(std::ranges::find(grid.valid, 1) - grid.valid.begin());
   ASSERT_LT(first, grid.size());
-  EXPECT_NEAR(static_cast<double>(grid.y[first]), -60 + 0.025 * static_cast<double>(first / 160), 0.03);
+  EXPECT_NEAR(static_cast<double>(grid.y[first]), -6 + 0.025 * static_cast<double>(first / 160), 0.03);
   // A stage that is unplugged ends it, and what came is kept.
   struct Unplugs : test::CollectGrid {
     bool profile(const Profile& profile) override {

@@ -491,7 +491,7 @@ class Pipeline(Scans):
 
     def test_progress_is_told_on_the_calling_thread(self):
         told = []
-        dubsar.register(self.grids[:4], progress=lambda *words: told.append((threading.get_ident(), *words)))
+        dubsar.register(self.grids[:2], progress=lambda *words: told.append((threading.get_ident(), *words)))
         self.assertTrue(told)
         self.assertEqual({ident for ident, _, _ in told}, {threading.get_ident()})
         self.assertTrue(all(0 <= fraction <= 1 for _, _, fraction in told))
@@ -556,12 +556,12 @@ class Pipeline(Scans):
                 met.append(True)
 
         def call():
-            dubsar.register(self.grids[:4], progress=lambda *words: first.is_set() or (first.set(), meet.wait()))
+            dubsar.register(self.grids[:2], progress=lambda *words: first.is_set() or (first.set(), meet.wait()))
 
         first = threading.Event()
         other = threading.Thread(target=call)
         other.start()
-        dubsar.register(self.grids[:4], progress=progress)
+        dubsar.register(self.grids[:2], progress=progress)
         other.join()
         self.assertTrue(met)
 

@@ -24,7 +24,7 @@ class Correct : public ::testing::Test {
  protected:
   static void SetUpTestSuite() {
     folder_ = new test::TemporaryFolder;
-    run_command({"simulate", "tablet", "--seed", "3", "--size", "24x20x10", "--spacing", "0.1", "-o",
+    run_command({"simulate", "tablet", "--seed", "3", "--size", "16x14x8", "--spacing", "0.1", "-o",
                  folder_->path().string()});
     run_command({"analyze", in("tablet.ply"), "-o", in("w.json")});
   }
@@ -218,8 +218,8 @@ TEST_F(Correct, WedgesOfAnotherMeshAreNotThisOnes) {
 }
 
 TEST_F(Correct, WhatIsAddedIsMarkedInEveryList) {
-  const Wedge first = wedges().wedges[3];
-  ASSERT_EQ(correct({"--delete", "3"}).status, 0);
+  const Wedge first = wedges().wedges[2];
+  ASSERT_EQ(correct({"--delete", "2"}).status, 0);
   const Eigen::Vector3d& at = first.depth_point_mm;
   const Outcome added = correct(
       {"--add-at", std::to_string(at.x()) + "," + std::to_string(at.y()) + "," + std::to_string(at.z()),

@@ -26,16 +26,14 @@ using ::testing::SizeIs;
 
 class OperatorWordTest : public ::testing::Test {
  protected:
+  static void SetUpTestSuite() { made_ = new test::TemporaryFolder; }
+  static void TearDownTestSuite() { delete made_; }
   [[nodiscard]] std::string at(const std::string& name) const { return (folder_.path() / name).string(); }
   [[nodiscard]] std::string session() const { return at("session"); }
 
-  void scan_two_fold() const {
-    test::write_two_fold_scans(at("scans"));
-    run_command({"scan", "--device", "replay:" + at("scans"), "--session", session()});
-  }
-  void scan_bumpy(int count) const {
-    test::write_bumpy_scans(at("scans"), count);
-    run_command({"scan", "--device", "replay:" + at("scans"), "--session", session()});
+  void scan_two_fold() const { copy_of_made("two-fold", test::write_two_fold_scans); }
+  void scan_bumpy() const {
+    copy_of_made("bumpy", [](const fs::path& folder) { test::write_bumpy_scans(folder, 4); });
   }
   [[nodiscard]] Outcome hint(Arguments more) const {
     Arguments words{"session", "hint", session()};
@@ -56,8 +54,21 @@ class OperatorWordTest : public ::testing::Test {
   }
 
  private:
+  /// Its scans and their session, which the first test that wants them makes.
+  void copy_of_made(const char* name, const auto& write_scans) const {
+    const fs::path made = made_->path() / name;
+    if (!fs::exists(made)) {
+      write_scans(made / "scans");
+      run_command({"scan", "--device", "replay:" + (made / "scans").string(), "--session",
+                   (made / "session").string()});
+    }
+    fs::copy(made, folder_.path(), fs::copy_options::recursive);
+  }
+
+  static test::TemporaryFolder* made_;
   test::TemporaryFolder folder_;
 };
+test::TemporaryFolder* OperatorWordTest::made_ = nullptr;
 
 std::string numbers(const nlohmann::json& matrix) {
   std::string text;
@@ -143,7 +154,7 @@ TEST_F(OperatorWordTest, BadHintsAreTwoAndOneLine) {
 }
 
 TEST_F(OperatorWordTest, APoseThatPutsTheScanAwayNamesTheNumber) {
-  scan_bumpy(3);
+  scan_bumpy();
   refused({"2", "--on", "0", "--pose", "1 0 0 1e30 0 1 0 0 0 0 1 0 0 0 0 1"}, "by number 4 of the 16: 1e+30");
   refused({"2", "--on", "0", "--pose", "1 0 0 0 0 1 0 -200 0 0 1 0 0 0 0 1"}, "by number 8 of the 16: -200");
   refused({"2", "--pose", "1 0 0 0 0 1 0 0 0 0 1 5000 0 0 0 1"}, "by number 12 of the 16: 5000");
@@ -155,7 +166,7 @@ TEST_F(OperatorWordTest, APoseThatPutsTheScanAwayNamesTheNumber) {
 }
 
 TEST_F(OperatorWordTest, ALockedScanStaysWhereItIs) {
-  scan_bumpy(4);
+  scan_bumpy();
   ASSERT_EQ(run_command({"session", "drop", session(), "0"}).status, 0);
   const nlohmann::json before = run_command({"register", session(), "--json"}).json()["scans"];
   ASSERT_EQ(before.size(), 3U);
@@ -197,7 +208,7 @@ TEST_F(OperatorWordTest, OnlyAScanWithAPlaceIsLocked) {
 }
 
 TEST_F(OperatorWordTest, WhatIsTakenOutAndPutBackIsAsBefore) {
-  scan_bumpy(4);
+  scan_bumpy();
   struct Chain {
     std::string poses, red_map, mesh;
   };

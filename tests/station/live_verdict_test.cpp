@@ -20,9 +20,21 @@ using test::kSmallTablet;
 
 class LiveVerdict : public ::testing::Test {
  protected:
-  /// Some scans, and the verdict of them.
+  static void SetUpTestSuite() { made_ = new test::TemporaryFolder; }
+  static void TearDownTestSuite() { delete made_; }
+  /// Some scans, and the verdict of them: made for the first test that wants them, a copy for each.
   void scan_and_finish() {
-    Followed followed(kSmallTablet, folder_.path() / "s");
+    if (!std::filesystem::exists(made_->path() / "s")) {
+      ASSERT_NO_FATAL_FAILURE(make());
+    }
+    std::filesystem::copy(made_->path() / "s", folder_.path() / "s",
+                          std::filesystem::copy_options::recursive);
+  }
+  test::TemporaryFolder folder_;
+
+ private:
+  static void make() {
+    Followed followed(kSmallTablet, made_->path() / "s");
     followed.session.scan_now();
     ASSERT_TRUE(followed.wait_for_phase(LivePhase::kWaiting));
     followed.session.finish();
@@ -30,8 +42,9 @@ class LiveVerdict : public ::testing::Test {
     ASSERT_TRUE(followed.session.state().verdict_kept);
     ASSERT_GE(followed.session.state().scans.size(), 2U);
   }
-  test::TemporaryFolder folder_;
+  static test::TemporaryFolder* made_;
 };
+test::TemporaryFolder* LiveVerdict::made_ = nullptr;
 
 TEST_F(LiveVerdict, IsNotOneOfAScanThatWasTakenOutSince) {
   scan_and_finish();

@@ -20,16 +20,23 @@ namespace fs = std::filesystem;
 using test::run_command;
 using ::testing::HasSubstr;
 
+/// Five scans, registered once; each test has a copy of the session.
 class LocksOfTwoFrames : public ::testing::Test {
  protected:
+  static void SetUpTestSuite() {
+    made_ = new test::TemporaryFolder;
+    test::write_bumpy_scans(made_->path() / "scans", 5);
+    scan((made_->path() / "session").string());
+  }
+  static void TearDownTestSuite() { delete made_; }
   void SetUp() override {
-    test::write_bumpy_scans(folder_.path() / "scans", 5);
     session_ = (folder_.path() / "session").string();
-    scan();
+    fs::copy(made_->path() / "session", session_, fs::copy_options::recursive);
+    ASSERT_EQ(stored().size(), 5U);
   }
   /// The engine goes on with what is there.
-  void scan() const {
-    run_command({"scan", "--device", "replay:" + (folder_.path() / "scans").string(), "--session", session_});
+  static void scan(const std::string& session) {
+    run_command({"scan", "--device", "replay:" + (made_->path() / "scans").string(), "--session", session});
   }
   void say(const char* word, int id) const {
     ASSERT_EQ(run_command({"session", word, session_, std::to_string(id)}).status, 0) << word << id;
@@ -78,9 +85,11 @@ class LocksOfTwoFrames : public ::testing::Test {
     }
   }
 
+  static test::TemporaryFolder* made_;
   test::TemporaryFolder folder_;
   std::string session_;
 };
+test::TemporaryFolder* LocksOfTwoFrames::made_ = nullptr;
 
 TEST_F(LocksOfTwoFrames, AreBothHeldBesideTheScansThatTheyWereMadeBeside) {
   lock_in_two_frames([&](int id) { say("lock", id); });
@@ -88,7 +97,7 @@ TEST_F(LocksOfTwoFrames, AreBothHeldBesideTheScansThatTheyWereMadeBeside) {
   all_lie_right(registered());
   // The model keeps the frame of the lock that stood.
   EXPECT_EQ(stored()[3].model_from_scanner.row_major(), of_3.row_major());
-  scan();
+  scan(session_);
   all_lie_right(stored());
   EXPECT_EQ(stored()[3].model_from_scanner.row_major(), of_3.row_major());
   // Taken out and put back with nothing else registered meanwhile, too.
@@ -113,7 +122,7 @@ TEST_F(LocksOfTwoFrames, OfAnEarlierVersionAreNamedAndNotRegistered) {
   };
   EXPECT_EQ(run_command({"register", session_}).status, 1);
   contradiction_is_named();
-  scan();
+  scan(session_);
   contradiction_is_named();
   say("unlock", 0);
   EXPECT_EQ(run_command({"register", session_}).status, 0);

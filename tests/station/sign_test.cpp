@@ -23,25 +23,34 @@ using test::run_command;
 using ::testing::HasSubstr;
 using ::testing::SizeIs;
 
-/// One side of a bumpy field: its other side has never been seen.
+/// One side of a bumpy field: its other side has never been seen. Scanned once; each test has a copy.
 class HalfScanned : public ::testing::Test {
  protected:
+  static void SetUpTestSuite() {
+    made_ = new test::TemporaryFolder;
+    const fs::path scans = test::write_bumpy_scans(made_->path() / "scans", 3);
+    scanned_ = run_command({"scan", "--device", "replay:" + scans.string(), "--session",
+                            (made_->path() / "session").string(), "--json"});
+  }
+  static void TearDownTestSuite() { delete made_; }
   void SetUp() override {
-    const fs::path scans = test::write_bumpy_scans(folder_.path() / "scans", 3);
+    ASSERT_EQ(scanned_.status, 1) << scanned_.err;
+    ASSERT_EQ(scanned_.json()["conclusive"], false);
+    fs::copy(made_->path(), folder_.path(), fs::copy_options::recursive);
     session_ = (folder_.path() / "session").string();
-    const Outcome scanned =
-        run_command({"scan", "--device", "replay:" + scans.string(), "--session", session_, "--json"});
-    ASSERT_EQ(scanned.status, 1) << scanned.err;
-    ASSERT_EQ(scanned.json()["conclusive"], false);
   }
   [[nodiscard]] Outcome sign(const std::vector<std::string>& more) const {
     std::vector<std::string> words{"session", "sign", session_, "--json"};
     words.insert(words.end(), more.begin(), more.end());
     return run_command(words);
   }
+  static test::TemporaryFolder* made_;
+  static Outcome scanned_;
   test::TemporaryFolder folder_;
   std::string session_;
 };
+test::TemporaryFolder* HalfScanned::made_ = nullptr;
+Outcome HalfScanned::scanned_;
 
 TEST(NotConclusive, SaysHowMuchIsRedButNeverThatNothingIs) {
   EXPECT_EQ(not_conclusive(12.34), "not conclusive: about 12.3 mm2 are still red");

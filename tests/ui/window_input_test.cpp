@@ -51,8 +51,8 @@ class MeshInput : public ::testing::Test {
     std::ofstream(mesh) << bytes;
     const auto file = folder_.path() / "look.script";
     std::ofstream(file) << script;
-    return run_command({"station", "--mesh", mesh.string(), "--script", file.string(), "--width", "1366",
-                        "--height", "768"});
+    return run_command({"station", "--mesh", mesh.string(), "--script", file.string(), "--width", "1024",
+                        "--height", "640"});
   }
   void SetUp() override {
     if (!display_.works()) {

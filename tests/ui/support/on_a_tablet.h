@@ -15,17 +15,24 @@
 namespace dubsar::test {
 
 /// A test that looks at a small tablet and its wedges through the real window; fails where there is no Xvfb.
+/// The tablet is made once; each test of a suite has a copy.
 class OnATablet : public ::testing::Test {
  protected:
+  static void SetUpTestSuite() {
+    made_ = new TemporaryFolder;
+    const std::string tablet = (made_->path() / "tablet.ply").string();
+    run_command({"simulate", "tablet", "--seed", "3", "--size", "16x14x8", "--spacing", "0.1", "-o",
+                 made_->path().string()});
+    analysed_ =
+        run_command({"analyze", tablet, "-o", (made_->path() / "tablet.wedges.json").string()}).status;
+  }
+  static void TearDownTestSuite() { delete made_; }
   void SetUp() override {
     if (!display_.works()) {
       FAIL() << "there is no Xvfb here: install xvfb (packages.txt)";
     }
-    ASSERT_EQ(run_command({"simulate", "tablet", "--seed", "3", "--size", "16x14x8", "--spacing", "0.1", "-o",
-                           folder_.path().string()})
-                  .status,
-              0);
-    ASSERT_EQ(run_command({"analyze", in("tablet.ply"), "-o", in("tablet.wedges.json")}).status, 0);
+    ASSERT_EQ(analysed_, 0);
+    std::filesystem::copy(made_->path(), folder_.path(), std::filesystem::copy_options::recursive);
   }
   [[nodiscard]] std::string in(const std::string& name) const { return (folder_.path() / name).string(); }
   /// In the folder, where what is kept of a mesh goes.
@@ -38,6 +45,8 @@ class OnATablet : public ::testing::Test {
     return outcome;
   }
 
+  inline static TemporaryFolder* made_ = nullptr;
+  inline static int analysed_ = -1;
   Display display_;
   TemporaryFolder folder_;
 };
