@@ -2,17 +2,27 @@
 // Copyright The Dubsar developers
 // From range grids to poses, and from grids in their places to a mesh.
 
+#include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <map>
 #include <utility>
 
 #include "core/scan_copies.h"
+#include "core/utf8.h"
 #include "formats/pins_json.h"
 #include "formats/poses_json.h"
 #include "planning/sparse_flags.h"
 #include "python/file_text.h"
 #include "python/jobs.h"
+#include "python/paired_poses.h"
 #include "registration/registrar.h"
+#include "station/outward_faces.h"
+#include "station/poses_scale.h"
 #include "station/station_scan.h"
+#include "station/stitch_scans.h"
+#include "station/stitch_warnings.h"
+#include "station/tablet_flags.h"
 #include "triangulation/placed_precision.h"
 #include "triangulation/stitcher.h"
 
@@ -73,48 +83,111 @@ Result<Registered> register_grids(const Grids& grids, const PinSet* pins,
 
 struct Stitched {
   Mesh mesh;
-  std::vector<ScanCopy> copies;  ///< grids that were left out
+  std::vector<std::string> of_scans;  ///< what there is to say of them, as the command says it
+  std::string of_mesh;                ///< the same; empty where there is nothing
 };
 
-Result<Stitched> stitch_grids(const Grids& grids, const std::vector<ScanPose>& poses,
-                              const std::optional<PinSet>& pins, JobContext& job) {
+StationScan scan_of(const Grids& grids, int place, const std::optional<PinSet>& pins) {
+  const GridPointer& grid = grids[static_cast<std::size_t>(place)];
+  StationScan scan;
+  // As long as the caller waits here, nobody takes the grid away: it is copied where it must be changed.
+  if (pins || grid->pin_tip_diameter_mm > 0 || grid->spacing_mm <= 0) {
+    scan = prepare_scan(place, *grid, pins);
+  } else {
+    scan.id = place;
+    scan.grid = scan.measured = grid;
+    scan.flags = std::make_shared<const SampleFlags>(flag_sparse(*grid));
+  }
+  scan.file = grid_name(grids, place);
+  return scan;
+}
+
+/// Those of the poses that are registered, made ready; what the others are is said.
+Result<std::vector<StationScan>> registered_scans(const Grids& grids, const std::vector<ScanPose>& poses,
+                                                  const std::optional<PinSet>& pins, const JobContext& job,
+                                                  std::vector<std::string>& said) {
   std::vector<StationScan> scans;
-  std::vector<PlacedScan> placed;
-  scans.reserve(poses.size());
-  for (const ScanPose& pose : poses) {
-    if (pose.status != PoseStatus::kRegistered) {
+  PosesScale scale;
+  for (int place = 0; std::cmp_less(place, grids.size()); ++place) {
+    if (job.cancelled()) {
+      return fail(ErrorKind::kCancelled, "stopped");
+    }
+    const std::string name = grid_name(grids, place);
+    const auto pose = std::ranges::find(poses, place, &ScanPose::id);
+    if (pose == poses.end()) {
+      said.push_back(left_out_sentence(name, "", "there is no pose of it"));
       continue;
     }
-    const GridPointer& grid = grids[static_cast<std::size_t>(pose.id)];
-    if (pins || grid->pin_tip_diameter_mm > 0) {
-      scans.push_back(prepare_scan(pose.id, *grid, pins));
-    } else {
-      StationScan scan;
-      scan.grid = grid;
-      scan.flags = std::make_shared<const SampleFlags>(flag_sparse(*grid));
-      scans.push_back(std::move(scan));
+    if (pose->status != PoseStatus::kRegistered) {
+      said.push_back(left_out_sentence(name, to_string(pose->status), pose->reason));
+      continue;
     }
-    placed.push_back(
-        {pose.id, scans.back().grid.get(), scans.back().flags.get(), pose.model_from_scanner, pose.sigma_mm});
+    scans.push_back(scan_of(grids, place, pins));
+    if (const std::string impossible = size_fault(*scans.back().grid); !impossible.empty()) {
+      return bad_input(name, impossible);
+    }
+    scale.add(*scans.back().grid, pose->model_from_scanner);
   }
-  if (placed.empty()) {
+  if (const std::string fault = scale.fault(); !fault.empty()) {
+    said.push_back("the list of poses: " + fault);
+  }
+  return scans;
+}
+
+/// `poses` by the places of their grids.
+Result<Stitched> stitch_grids(const Grids& grids, const std::vector<ScanPose>& poses,
+                              const std::optional<PinSet>& pins, JobContext& job) {
+  Stitched out;
+  const Result<std::vector<StationScan>> scans = registered_scans(grids, poses, pins, job, out.of_scans);
+  if (!scans) {
+    return std::unexpected(scans.error());
+  }
+  if (scans->empty()) {
     return fail(ErrorKind::kUsage, "no scan is registered", {}, "see the poses' reasons");
+  }
+  std::map<int, std::string> names;
+  for (const StationScan& scan : *scans) {
+    names[scan.id] = scan.file;
   }
   Stitcher stitcher;
   job.progress("triangulate grids", 0.0);
-  if (const Status added = stitcher.add(placed, job); !added) {
-    return std::unexpected(added.error());
+  const Result<std::vector<ForeignFound>> foreign = add_without_foreign(stitcher, *scans, poses, job);
+  if (!foreign) {
+    return std::unexpected(foreign.error());
   }
-  std::vector<ScanCopy> copies = stitcher.copies();
+  if (const Status ready = stitcher.update(job); !ready) {
+    return std::unexpected(ready.error());
+  }
+  std::ranges::transform(*foreign, std::back_inserter(out.of_scans), sentence_of);
+  for (const ScanCopy& copy : stitcher.copies()) {
+    out.of_scans.push_back(left_out_sentence(names.at(copy.id), "", copy_reason(copy, names)));
+  }
+  for (const ScanCopy& copy : stitcher.copies()) {
+    names.erase(copy.id);
+  }
+  for (const int id : stitcher.without_surface()) {
+    out.of_scans.push_back(left_out_sentence(names.at(id), "", no_surface_reason()));
+    names.erase(id);
+  }
+  std::ranges::move(warnings_of_places(stitcher, names), std::back_inserter(out.of_scans));
   Result<Mesh> mesh = stitcher.take_mesh(job);
-  return mesh ? Result<Stitched>({std::move(*mesh), std::move(copies)}) : std::unexpected(mesh.error());
+  if (!mesh) {
+    return std::unexpected(mesh.error());
+  }
+  if (const Status has = check_has_surface(*mesh, "the list of grids"); !has) {
+    return std::unexpected(has.error());
+  }
+  if (const std::optional<Error> wrong_way = inside_out(*mesh, "the mesh")) {
+    out.of_mesh = wrong_way->line();
+  }
+  out.mesh = std::move(*mesh);
+  return out;
 }
 
-/// `has`: what is said between the grid and whose samples it has.
-void warn_of_copies(const std::vector<ScanCopy>& copies, const std::string& has) {
+void warn_of_copies(const std::vector<ScanCopy>& copies) {
   for (const ScanCopy& copy : copies) {
-    warn_of_scan("grid " + std::to_string(copy.id) + has + std::to_string(copy.of_id) +
-                 ", and counts as the same scan");
+    warn_of_scan("grid " + std::to_string(copy.id) + " has the very samples of grid " +
+                 std::to_string(copy.of_id) + ", and counts as the same scan");
   }
 }
 
@@ -152,7 +225,7 @@ void bind_pose(py::module_& module) {
   py::class_<ScanPose>(module, "Pose", "Where a scan lies, and how sure that is.")
       .def(py::init(&make_pose), py::arg("id"), py::arg("model_from_scanner"), py::arg("file") = "",
            py::arg("sigma_mm") = 0.0, "A pose that is known from elsewhere: it counts as registered.")
-      .def_readonly("id", &ScanPose::id, "the scan's place in the list of grids")
+      .def_readonly("id", &ScanPose::id, "the scan's place in the list of grids; stitch() goes by file first")
       .def_property_readonly("file", [](const ScanPose& pose) { return text_of(pose.file); })
       .def_property_readonly(
           "status", [](const ScanPose& pose) { return to_string(pose.status); },
@@ -198,7 +271,7 @@ void bind_scans(py::module_& module) {
         Registered registered = run_for_result(progress, [&](JobContext& job) {
           return register_grids(grids, pins ? &*pins : nullptr, from, job);
         });
-        warn_of_copies(registered.copies, " has the very samples of grid ");
+        warn_of_copies(registered.copies);
         return std::move(registered.poses);
       },
       py::arg("grids"), py::arg("starts") = py::none(), py::arg("pins") = py::none(),
@@ -211,23 +284,24 @@ void bind_scans(py::module_& module) {
       [](const Grids& grids, const std::vector<ScanPose>& poses, const std::optional<fs::path>& pins_file,
          const py::object& progress) {
         check_grids(grids);
-        for (const ScanPose& pose : poses) {
-          if (pose.id < 0 || static_cast<std::size_t>(pose.id) >= grids.size()) {
-            raise({ErrorKind::kUsage,
-                   "there is no grid of pose " + std::to_string(pose.id),
-                   {},
-                   "a pose's id is its grid's place in the list"});
-          }
-        }
+        const std::vector<ScanPose> paired = paired_poses(poses, grids);
         const std::optional<PinSet> pins = pins_of(pins_file);
         Stitched stitched =
-            run_for_result(progress, [&](JobContext& job) { return stitch_grids(grids, poses, pins, job); });
-        warn_of_copies(stitched.copies, " is left out: it has the very samples of grid ");
+            run_for_result(progress, [&](JobContext& job) { return stitch_grids(grids, paired, pins, job); });
+        for (const std::string& line : stitched.of_scans) {
+          warn_of_scan(one_line(line));
+        }
+        if (!stitched.of_mesh.empty()) {
+          warn_of_mesh(stitched.of_mesh);
+        }
         return std::make_shared<Mesh>(std::move(stitched.mesh));
       },
       py::arg("grids"), py::arg("poses"), py::arg("pins") = py::none(), py::arg("progress") = py::none(),
-      "One oriented 2-manifold of the registered scans. A grid with the very samples of another is left "
-      "out.");
+      "One oriented 2-manifold of the registered scans. A pose is of the grid whose source its file names, "
+      "where each pose has a file that is the source of just one grid, whatever the order of either list; "
+      "else of the grid whose place in the list is its id, and a file that names another grid is refused. "
+      "What is no part of the mesh, what was in the way of a scan and which poses look wrong is warned of "
+      "(ScanWarning), as the command does, by the grids' places.");
   module.def(
       "read_poses", [](const fs::path& path) { return value_of(read_poses(path)); }, py::arg("path"));
   module.def(

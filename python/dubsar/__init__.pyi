@@ -195,6 +195,9 @@ def register(
     pins: Optional[Path] = None,
     progress: Progress = None,
 ) -> list[Pose]: ...
+# A pose is of the grid whose source its file names, where each pose has a file that is the source of just one grid, else
+# of the grid whose place is its id. Warns (ScanWarning) as the command does: of what was in the way of a scan, of grids that
+# are no part of the mesh, of poses that look wrong.
 def stitch(
     grids: Sequence[Grid],
     poses: Sequence[Pose],

@@ -7,6 +7,7 @@
 
 #include "core/log.h"
 #include "core/utf8.h"
+#include "station/stitch_warnings.h"
 
 namespace dubsar {
 
@@ -120,9 +121,7 @@ Result<std::vector<LeftOutScan>> left_out_of(const SessionStore& store) {
 }
 
 void warn_of(const LeftOutScan& scan) {
-  const std::string word = word_of(scan.why);
-  log_warning(one_line(scan.file) + " is left out: " + word +
-              (word.empty() || scan.reason.empty() ? "" : ", ") + scan.reason);
+  log_warning(left_out_sentence(one_line(scan.file), word_of(scan.why), scan.reason));
 }
 
 nlohmann::ordered_json left_out_json(const std::vector<LeftOutScan>& scans) {

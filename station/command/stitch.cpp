@@ -18,20 +18,19 @@
 #include "core/log.h"
 #include "formats/mesh_io.h"
 #include "formats/mesh_losses.h"
-#include "registration/registrar.h"
-#include "registration/unit_check.h"
 #include "station/command/command.h"
 #include "station/command/left_out_scans.h"
 #include "station/command/outputs.h"
 #include "station/command/scan_set_options.h"
 #include "station/command/stitch_stamp.h"
 #include "station/command/stitch_taken.h"
-#include "station/command/stitch_warnings.h"
 #include "station/mesh_json.h"
 #include "station/offline.h"
 #include "station/outward_faces.h"
 #include "station/poses_by_id.h"
 #include "station/poses_scale.h"
+#include "station/stitch_scans.h"
+#include "station/stitch_warnings.h"
 #include "station/tablet_flags.h"
 #include "station/tablet_label.h"
 #include "triangulation/mesh_check.h"
@@ -40,25 +39,6 @@
 namespace dubsar {
 
 namespace {
-
-/// Why the grid cannot be in the unit that was said; empty when it may be.
-std::string size_fault(const RangeGrid& grid) {
-  const RegistrationOptions usual;
-  const double scale_mm = surface_scale_mm(grid);
-  return scale_mm > 0 ? impossible_size({scale_mm, grid.spacing_mm}, usual.least_size_mm, usual.most_size_mm)
-                      : "";
-}
-
-/// What the stitcher refuses is named by its file.
-Status put(Stitcher& stitcher, const StationScan& scan, const SampleFlags& flags, const ScanPose& pose,
-           const CommandContext& context) {
-  Status added =
-      stitcher.add({scan.id, scan.grid.get(), &flags, pose.model_from_scanner, pose.sigma_mm}, context.job);
-  if (!added && added.error().kind == ErrorKind::kBadInput) {
-    added.error().where = scan.file;
-  }
-  return added;
-}
 
 /// Which samples are foreign only all scans together tell: those that show some are read once more.
 Status leave_out_foreign(const ScanSetArguments& arguments, const Taken& taken, ForeignMatter& matter,
@@ -78,8 +58,9 @@ Status leave_out_foreign(const ScanSetArguments& arguments, const Taken& taken, 
       return {};
     }
     stitcher.remove(scan.id);
-    return put(stitcher, scan, without_foreign(*scan.grid, *scan.flags, matter.matter(scan.id, *scan.grid)),
-               *std::ranges::find(taken.poses, scan.id, &ScanPose::id), context);
+    return add_scan(stitcher, scan,
+                    without_foreign(*scan.grid, *scan.flags, matter.matter(scan.id, *scan.grid)),
+                    *std::ranges::find(taken.poses, scan.id, &ScanPose::id), context.job);
   };
   const Result<ScanSet> set = visit_scan_set(arguments.path, reading, take, context.job);
   return set ? Status() : std::unexpected(set.error());
@@ -165,7 +146,7 @@ Result<Taken> take_scan_by_scan(const ScanSetArguments& arguments, Stitcher& sti
     adding =
         std::async(std::launch::async, [&stitcher, &matter, &context, pose = *pose, scan = std::move(scan)] {
           matter.add(scan.id, *scan.grid, *scan.flags);
-          return put(stitcher, scan, *scan.flags, pose, context);
+          return add_scan(stitcher, scan, *scan.flags, pose, context.job);
         });
     return before;
   };
@@ -204,12 +185,11 @@ Result<Taken> take_registered(const ScanSetArguments& arguments, Stitcher& stitc
   if (!poses) {
     return std::unexpected(poses.error());
   }
-  std::vector<PlacedScan> placed = placed_scans(*set, *poses);
   Taken taken;
-  taken.scans = placed.size();
   for (const ScanPose& pose : *poses) {
     if (pose.status == PoseStatus::kRegistered) {
       taken.names[pose.id] = pose.file;
+      ++taken.scans;
     } else {
       taken.leave_out(left_out(pose));
     }
@@ -217,19 +197,13 @@ Result<Taken> take_registered(const ScanSetArguments& arguments, Stitcher& stitc
   if (const Status told = leave_out_unread(*set, arguments.path, nullptr, taken); !told) {
     return std::unexpected(told.error());
   }
-  TabletFlags flags;
-  for (const StationScan& scan : set->scans) {
-    flags.add(scan);
+  const Result<std::vector<ForeignFound>> foreign =
+      add_without_foreign(stitcher, set->scans, *poses, context.job);
+  if (!foreign) {
+    return std::unexpected(foreign.error());
   }
-  flags.follow(*poses);
-  for (PlacedScan& scan : placed) {
-    scan.flags = &flags.of(scan.id);
-  }
-  for (const ForeignFound& found : flags.foreign()) {
+  for (const ForeignFound& found : *foreign) {
     log_warning(sentence_of(found));
-  }
-  if (const Status added = stitcher.add(placed, context.job); !added) {
-    return std::unexpected(added.error());
   }
   return taken;
 }
@@ -284,17 +258,13 @@ Result<int> stitch_all(const ScanSetArguments& arguments, const StitchStamp& sta
   }
   leave_out_copies(*stitcher, *taken);
   leave_out_without_surface(*stitcher, *taken);
-  warn_of_places(*stitcher, taken->names);
+  std::ranges::for_each(warnings_of_places(*stitcher, taken->names), log_warning);
   const Result<Mesh> mesh = stitcher->take_mesh(context.job);
   if (!mesh) {
     return std::unexpected(mesh.error());
   }
-  if (mesh->faces.empty()) {
-    return bad_input(arguments.path,
-                     fmt::format("its scans have no surface: nowhere do {} triangles of neighbouring samples "
-                                 "hang together",
-                                 StitchOptions().least_component_faces),
-                     "scan again, nearer or with more of the tablet in view");
+  if (const Status has = check_has_surface(*mesh, arguments.path); !has) {
+    return std::unexpected(has.error());
   }
   if (const std::optional<Error> wrong_way = inside_out(*mesh, arguments.out)) {
     log_warning(wrong_way->line());

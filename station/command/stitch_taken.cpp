@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "station/offline.h"
+#include "station/stitch_warnings.h"
 
 namespace dubsar {
 
@@ -39,8 +40,7 @@ Status leave_out_unread(const ScanSet& set, const std::filesystem::path& path,
 void leave_out_copies(const Stitcher& stitcher, Taken& taken) {
   for (const ScanCopy& copy : stitcher.copies()) {
     taken.leave_out(
-        {copy.id, taken.names.at(copy.id), LeftOutScan::Why::kCopy,
-         "it has the very samples of " + taken.names.at(copy.of_id) + ", and counts as the same scan"});
+        {copy.id, taken.names.at(copy.id), LeftOutScan::Why::kCopy, copy_reason(copy, taken.names)});
   }
   for (const ScanCopy& copy : stitcher.copies()) {
     taken.names.erase(copy.id);
@@ -50,10 +50,7 @@ void leave_out_copies(const Stitcher& stitcher, Taken& taken) {
 
 void leave_out_without_surface(const Stitcher& stitcher, Taken& taken) {
   for (const int id : stitcher.without_surface()) {
-    taken.leave_out(
-        {id, taken.names.at(id), LeftOutScan::Why::kNoSurface,
-         "it has no surface, since no three neighbouring samples of its rows and columns make a triangle; "
-         "scan again, nearer or with more of the tablet in view"});
+    taken.leave_out({id, taken.names.at(id), LeftOutScan::Why::kNoSurface, no_surface_reason()});
     taken.names.erase(id);
     --taken.scans;
   }

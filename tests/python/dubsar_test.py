@@ -306,6 +306,120 @@ class Errors(unittest.TestCase):
                 call()
 
 
+class Stitching(unittest.TestCase):
+    """Small scans of one bumpy surface, each from its own place: what is said of them, and which pose is whose."""
+
+    @staticmethod
+    def bumps(number, moved_mm=0.0, source=""):
+        """Scan `number`, 4 mm square, and its pose, `moved_mm` too high."""
+        y, x = np.mgrid[0:41, 0:41] * 0.1
+        noise = np.random.default_rng(number).normal(0, 0.002, x.shape)
+        z = 0.4 * np.sin(1.7 * (x + number)) * np.cos(1.3 * y)
+        place = np.eye(4)
+        place[:3, 3] = (number, 0, moved_mm)
+        return dubsar.Grid(x, y, z + noise, source=source), place
+
+    @classmethod
+    def named(cls, count=3):
+        scans = [cls.bumps(k, source=f"{'abcdef'[k]}.ply") for k in range(count)]
+        return [grid for grid, _ in scans], [dubsar.Pose(k, at, file=scans[k][0].source) for k, (_, at) in enumerate(scans)]
+
+    @staticmethod
+    def said(grids, poses, **more):
+        with warnings.catch_warnings(record=True) as heard:
+            warnings.simplefilter("always")
+            mesh = dubsar.stitch(grids, poses, **more)
+        assert all(one.category is dubsar.ScanWarning for one in heard)
+        return mesh, [str(one.message) for one in heard]
+
+    def test_names_pair_poses_and_grids_in_any_order(self):
+        grids, poses = self.named()
+        for order in ((2, 1, 0), (1, 2, 0)):
+            shuffled = [grids[k] for k in order]
+            by_place = [dubsar.Pose(place, poses[k].model_from_scanner) for place, k in enumerate(order)]
+            right, nothing = self.said(shuffled, by_place)
+            self.assertEqual(nothing, [])
+            for list_of_poses in (poses, poses[::-1], [poses[k] for k in order]):
+                mesh, nothing = self.said(shuffled, list_of_poses)
+                self.assertEqual(nothing, [])
+                np.testing.assert_array_equal(mesh.vertices, right.vertices)
+        of_two, left_out = self.said(grids[1:], poses[:0:-1])
+        self.assertEqual((left_out, len(of_two.faces) > 0), ([], True))
+
+    def test_a_name_that_contradicts_its_place_is_refused(self):
+        grids, poses = self.named()
+        grids[2].source = "a.ply"  # two of that name: now the ids tell
+        with self.assertRaisesRegex(dubsar.UsageError, r"pose 0 is of a\.ply, and grid 0 \(b\.ply\) stands in that place"):
+            dubsar.stitch([grids[1], grids[0], grids[2]], poses[:2])
+        with self.assertRaisesRegex(dubsar.UsageError, r"pose 1 is of folder/a\.ply, and grid 1 \(b\.ply\)"):
+            dubsar.stitch(grids, [poses[0], dubsar.Pose(1, np.eye(4), file="folder/a.ply")])
+        # A name that no grid has says nothing.
+        dubsar.stitch(grids[:2], [dubsar.Pose(k, poses[k].model_from_scanner, file="elsewhere") for k in range(2)])
+
+    def test_a_grid_has_one_pose_and_a_pose_has_a_grid(self):
+        grids, poses = self.named()
+        for two in (poses + [poses[1]], [dubsar.Pose(1, np.eye(4))] * 2):
+            with self.assertRaisesRegex(dubsar.UsageError, r"two poses are of grid 1 \(b\.ply\)"):
+                dubsar.stitch(grids, two)
+        with self.assertRaisesRegex(dubsar.UsageError, "there is no grid of pose 2"):
+            dubsar.stitch(grids[:2], poses)
+
+    def test_poses_that_are_off_are_said(self):
+        (first, at), (second, higher) = self.bumps(0), self.bumps(1, moved_mm=0.15)
+        _, said = self.said([first, second], [dubsar.Pose(0, at), dubsar.Pose(1, higher)])
+        self.assertEqual(len(said), 1)
+        self.assertRegex(said[0], r"scans 0 and 1 lie 0\.\d+ mm apart where they overlap, .*; register them again")
+
+    def test_a_scan_that_lies_alone_is_said(self):
+        grids, poses = self.named()
+        alone = poses[2].model_from_scanner.copy()
+        alone[1, 3] = 50
+        _, said = self.said(grids, poses[:2] + [dubsar.Pose(2, alone, file="c.ply")])
+        self.assertEqual(
+            said,
+            ["grid 2 (c.ply) overlaps no other scan where its pose puts it; look whether that pose is right"],
+        )
+
+    def test_poses_in_another_unit_are_said(self):
+        # Each in the numbers of its own place, which a pose in metres hardly moves.
+        y, x = np.mgrid[0:41, 0:41] * 0.1
+        grids, poses = [], []
+        for k in range(2):
+            at = np.eye(4)
+            at[0, 3] = 0.3 * k
+            grids.append(dubsar.Grid(x - 300 * k, y, 0.4 * np.sin(1.7 * x + k)))
+            poses.append(dubsar.Pose(k, at))
+        said = self.said(grids, poses)[1]
+        self.assertIn("the list of poses: its translations look 1000 times too small", said[0])
+
+    def test_what_is_no_part_of_the_mesh_is_said(self):
+        grids, poses = self.named(5)
+        grids[3].valid[1:] = False
+        with tempfile.TemporaryDirectory() as folder:
+            path = os.path.join(folder, "poses.json")
+            dubsar.write_poses(path, poses[:4])
+            with open(path) as file:
+                stored = json.load(file)
+            stored["scans"][2].update(status="unsure", reason="two places fit")
+            with open(path, "w") as file:
+                json.dump(stored, file)
+            _, said = self.said(grids, dubsar.read_poses(path))
+        self.assertEqual(len(said), 3)
+        self.assertEqual(said[0], "grid 2 (c.ply) is left out: unsure, two places fit")
+        self.assertEqual(said[1], "grid 4 (e.ply) is left out: there is no pose of it")
+        self.assertRegex(said[2], r"^grid 3 \(d\.ply\) is left out: it has no surface, since no three .* scan again")
+        with self.assertRaisesRegex(dubsar.BadInputError, "^the list of grids: its scans have no surface"):
+            dubsar.stitch(grids[3:4], poses[3:4])
+
+    def test_a_grid_that_is_hardly_in_millimetres_is_refused(self):
+        grids, poses = self.named(1)
+        for axis in "xyz":
+            getattr(grids[0], axis)[:] /= 1000
+        grids[0].spacing_mm = 0.0001
+        with self.assertRaisesRegex(dubsar.BadInputError, r"grid 0 \(a\.ply\): it would be 0.00417 mm across"):
+            dubsar.stitch(grids, poses)
+
+
 class Pipeline(Scans):
     def test_poses(self):
         self.assertTrue(all(pose.registered for pose in self.poses), self.poses)
@@ -332,10 +446,23 @@ class Pipeline(Scans):
 
     def test_a_grid_that_came_twice_is_left_out_and_said(self):
         pose = dubsar.Pose(len(self.grids), self.poses[0].model_from_scanner)
-        with self.assertWarnsRegex(dubsar.ScanWarning, "grid 8 is left out: .* samples of grid 0"):
+        with self.assertWarnsRegex(dubsar.ScanWarning, "grid 8.* is left out: .* samples of grid 0"):
             twice = dubsar.stitch(self.grids + [self.grids[0]], self.poses + [pose])
         np.testing.assert_array_equal(twice.vertices, self.mesh.vertices)
         np.testing.assert_array_equal(twice.scans, self.mesh.scans)
+
+    def test_a_finger_in_a_grid_is_left_out_and_said(self):
+        touched = self.grids[0]
+        y, x = np.mgrid[0 : touched.rows, 0 : touched.cols]
+        finger = touched.valid & (abs(x - touched.cols // 2) < 20) & (abs(y - touched.rows // 2) < 20)
+        grid = dubsar.Grid(
+            touched.x, touched.y, touched.z + np.float32(4) * finger, touched.valid, spacing_mm=touched.spacing_mm,
+            source=touched.source,
+        )
+        with self.assertWarnsRegex(dubsar.ScanWarning, r"something was in the way of scan 0: \d+ mm² of it are left out"):
+            mesh = dubsar.stitch([grid] + self.grids[1:], self.poses)
+        for end in (np.min, np.max):
+            np.testing.assert_allclose(end(mesh.vertices, axis=0), end(self.mesh.vertices, axis=0), atol=0.5)
 
     def test_a_grid_that_came_twice_is_registered_once_and_said(self):
         with self.assertWarnsRegex(dubsar.ScanWarning, "grid 8 has the very samples of grid 3, and counts as the same"):
