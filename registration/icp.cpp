@@ -76,7 +76,7 @@ void accumulate(const SurfaceLevel& from, const RigidTransform& model_from_from,
         nearest_usable(into, {points.data(), count}, reach, {found.data(), count});
         for (std::size_t i = 0; i < count; ++i) {
           const auto& [j, q] = found[i];
-          if (j < 0) {
+          if (j < 0 || (options.within_borders && !lies_on(into, found[i], points[i]))) {
             continue;
           }
           const std::size_t k = begin + i * every;
@@ -280,6 +280,11 @@ Sums inform(const Pull& pull, Sums sums, bool may_step, IcpResult& out) {
   const FitInformation found = fit_information(slope, terms, {radius, pull.source.spacing_mm});
   out.information = found.information;
   out.blocks = found.blocks;
+  if (pull.targets.size() == 1 && pull.options.two_way) {
+    const std::size_t sent = pull.source.samples.size();
+    out.on_source = footprint(pull.source.samples, std::span(terms).first(sent));
+    out.on_target = footprint(pull.targets.front().level->samples, std::span(terms).subspan(sent));
+  }
   return sums;
 }
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/rigid_transform.h"
+#include "registration/footprint.h"
 #include "registration/icp_information.h"
 #include "registration/scan_surface.h"
 
@@ -31,7 +32,11 @@ struct IcpOptions {
   int iterations = 15;
   double converged_mm = 1e-5;  ///< stops when no point of the scan moves farther than this
   bool two_way = false;        ///< also send the targets' samples into the source: symmetric, twice the work
-  bool information = false;    ///< also work out IcpResult::information
+  /// Drops pairs of samples that lie beyond the border of what the other scan matches (lies_on()): they pull
+  /// the two apart, by some micrometres. Of a scan that lies far off they may be all there is. For
+  /// kPointToPlane.
+  bool within_borders = false;
+  bool information = false;  ///< also work out IcpResult::information
 };
 
 /// The end of an ICP run. The twist convention: left perturbation (omega rad, v mm) of model_from_source
@@ -47,7 +52,8 @@ struct IcpResult {
   /// Inverse covariance of the twist (icp_information.h), where asked for and there is enough to tell; zero
   /// otherwise.
   Matrix6d information = Matrix6d::Zero();
-  int blocks = 0;  ///< that the information was estimated from
+  int blocks = 0;                  ///< that the information was estimated from
+  Footprint on_source, on_target;  ///< with it, of two ways with one target
   /// Smallest eigenvalue of the normal matrix per unit weight, turns scaled to displacement at the scan's rms
   /// radius: near 0 when the scan can slide on its targets (plane, sphere, cylinder), up to 1/6 or so for a
   /// rugged one.

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 namespace dubsar {
 
@@ -65,6 +66,23 @@ void nearest_usable(const SurfaceLevel& level, std::span<const Eigen::Vector3f> 
       }
     }
   }
+}
+
+bool lies_on(const SurfaceLevel& level, const GridLookup::Found& found, const Eigen::Vector3f& p) {
+  const RangeGrid& grid = level.grid;
+  const auto i = static_cast<std::size_t>(found.sample);
+  const int row = grid.row_of(i);
+  const int col = grid.col_of(i);
+  const float d2 = (p - found.point_mm).squaredNorm();
+  for (const auto& [r, c] : {std::pair{row - 1, col}, {row + 1, col}, {row, col - 1}, {row, col + 1}}) {
+    if (grid.is_valid(r, c)) {
+      const std::size_t j = grid.index(r, c);
+      if (level.usable[j] == 0 && (p - grid.point(j)).squaredNorm() < d2) {
+        return false;
+      }
+    }
+  }
+  return true;
 }
 
 }  // namespace dubsar

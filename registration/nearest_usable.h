@@ -22,6 +22,12 @@ namespace dubsar {
 void nearest_usable(const SurfaceLevel& level, std::span<const Eigen::Vector3f> points, float reach_mm,
                     std::span<GridLookup::Found> found);
 
+/// False where p lies nearer to a sample beside `found`, its nearest usable one, that may not be matched: p
+/// lies beyond the border of what may, and found is merely the last of it. Such partners lie all to one side,
+/// and what normals make of that distance along a curved surface pulls the two scans apart.
+[[nodiscard]] bool lies_on(const SurfaceLevel& level, const GridLookup::Found& found,
+                           const Eigen::Vector3f& p);
+
 /// Tukey's weight; pairs far off say nothing.
 [[nodiscard]] inline double tukey_weight(double residual, double scale) {
   const double u = residual / (4.685 * scale);

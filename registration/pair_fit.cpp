@@ -3,6 +3,7 @@
 #include "registration/pair_fit.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace dubsar {
 
@@ -12,6 +13,7 @@ std::optional<PairFit> fit_pair(const ScanSurface& on, const ScanSurface& moved,
   const IcpTarget target{on.fine.get(), {}};
   IcpOptions icp_options;
   icp_options.two_way = true;
+  icp_options.within_borders = true;
   icp_options.information = true;
   icp_options.kernel_mm = 1.5 * residual_sigma_mm;
   icp_options.reach_mm =
@@ -34,6 +36,8 @@ std::optional<PairFit> fit_pair(const ScanSurface& on, const ScanSurface& moved,
   out.on_from_moved = result.model_from_source;
   out.center_mm = result.center_mm;
   out.information = result.information;
+  out.of_on = std::move(result.on_target);
+  out.of_moved = std::move(result.on_source);
   out.pairs = result.pairs;
   out.rms_mm = result.rms_mm;
   return out;

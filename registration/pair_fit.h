@@ -15,6 +15,7 @@ struct PairFit {
   RigidTransform on_from_moved;
   Eigen::Vector3d center_mm{0, 0, 0};
   Matrix6d information = Matrix6d::Zero();
+  Footprint of_on, of_moved;
   int pairs = 0;
   double rms_mm = 0;
   bool slid = false;  ///< the surfaces let the scan slide away: the pose is the start's

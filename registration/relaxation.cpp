@@ -167,6 +167,7 @@ Status check(const std::vector<RigidTransform>& start, const std::vector<bool>& 
 PairConstraint turned(const PairConstraint& pair) {
   PairConstraint out = pair;
   std::swap(out.a, out.b);
+  std::swap(out.of_a, out.of_b);
   out.a_from_b = pair.a_from_b.inverse();
   out.center_mm = out.a_from_b * pair.center_mm;
   // The opposite motion about the same place, in the other scan's frame.

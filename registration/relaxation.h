@@ -20,7 +20,8 @@ struct PairConstraint {
   RigidTransform a_from_b;
   Eigen::Vector3d center_mm{0, 0, 0};
   Matrix6d information = Matrix6d::Zero();  ///< inverse covariance of the twist
-  bool from_surfaces = true;                ///< the noise of its scans is in it, and in their other pairs
+  bool from_surfaces = true;                ///< the noise of its scans is in it, and in their other pairs …
+  Footprint of_a, of_b;                     ///< … as far as these use the same parts of them
 };
 
 /// The same said of b and a.
@@ -29,8 +30,8 @@ struct PairConstraint {
 struct RelaxationOptions {
   double huber_sigmas = 3.0;  ///< a pair that is off by more pulls with constant force
   int iterations = 50;
-  /// How much of a scan's noise its pairs have in common, from 0 (each pair sees other samples) to 1 (all see
-  /// the same). Calibrated with dubsar-registration.
+  /// How much of a scan's noise pairs on one part of it have in common, from 0 (each pair sees other samples)
+  /// to 1 (all see the same). Calibrated with dubsar-registration.
   double shared_noise = 1.0;
 };
 

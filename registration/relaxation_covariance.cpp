@@ -51,6 +51,35 @@ Matrix6d half_root(const Matrix6d& information, const Eigen::Vector3d& center_mm
          eigen.eigenvalues().cwiseMax(0.0).cwiseSqrt().asDiagonal() * eigen.eigenvectors().transpose();
 }
 
+/// A scan's noise in one of its pairs: half_root(), acting on this scan and, the other way, on the other. A
+/// place below 0: that scan is held.
+struct Share {
+  Matrix6d root;
+  int place = -1, other = -1;
+  const Footprint* footprint = nullptr;
+};
+
+/// What the pairs of one scan have in common, two by two.
+void add_shared(const std::vector<Share>& shares, double shared_noise, Eigen::MatrixXd& pull) {
+  for (const Share& p : shares) {
+    for (const Share& q : shares) {
+      if (&p == &q) {
+        continue;  // is in the pair's own
+      }
+      const Matrix6d both =
+          shared_noise * in_common(*p.footprint, *q.footprint) * p.root * q.root.transpose();
+      for (const auto& [row, col, sign] : {std::tuple{p.place, q.place, 1.0},
+                                           {p.other, q.other, 1.0},
+                                           {p.place, q.other, -1.0},
+                                           {p.other, q.place, -1.0}}) {
+        if (row >= 0 && col >= 0) {
+          pull.block<6, 6>(row, col) += sign * both;
+        }
+      }
+    }
+  }
+}
+
 }  // namespace
 
 Matrix6d about_place(const Matrix6d& covariance, const Eigen::Vector3d& off_mm) {
@@ -75,17 +104,16 @@ bool set_covariances(std::vector<RelaxedPose>& poses, const std::vector<bool>& h
   const Eigen::MatrixXd known = 1e-9 * Eigen::MatrixXd::Identity(6 * unknowns, 6 * unknowns);
   Eigen::MatrixXd normal = known;
   Eigen::MatrixXd pull = known;
-  std::vector<Eigen::MatrixXd> of_scan(poses.size(), Eigen::MatrixXd::Zero(6 * unknowns, 6));
+  std::vector<std::vector<Share>> of_scan(poses.size());
   for (const PairConstraint& pair : pairs) {
     const Matrix6d h = in_model(pair, poses[pair.a].model_from_scanner) / variance_factor;
     const int pa = place[pair.a];
     const int pb = place[pair.b];
-    const double alone = pair.from_surfaces ? 1.0 - shared_noise : 1.0;
     for (const auto& [row, col, sign] :
          {std::tuple{pa, pa, 1.0}, {pb, pb, 1.0}, {pa, pb, -1.0}, {pb, pa, -1.0}}) {
       if (row >= 0 && col >= 0) {
         normal.block<6, 6>(row, col) += sign * h;
-        pull.block<6, 6>(row, col) += sign * alone * h;
+        pull.block<6, 6>(row, col) += sign * h;
       }
     }
     for (const std::size_t scan : {pair.a, pair.b}) {
@@ -93,17 +121,13 @@ bool set_covariances(std::vector<RelaxedPose>& poses, const std::vector<bool>& h
         break;
       }
       const Matrix6d k = half_root(h, poses[scan].model_from_scanner * centers_mm[scan]);
-      const std::size_t other = scan == pair.a ? pair.b : pair.a;
-      if (place[scan] >= 0) {
-        of_scan[scan].block<6, 6>(place[scan], 0) += k;
-      }
-      if (place[other] >= 0) {
-        of_scan[scan].block<6, 6>(place[other], 0) -= k;
-      }
+      const bool is_a = scan == pair.a;
+      of_scan[scan].push_back(
+          {k, place[scan], place[is_a ? pair.b : pair.a], is_a ? &pair.of_a : &pair.of_b});
     }
   }
-  for (const Eigen::MatrixXd& k : of_scan) {
-    pull += shared_noise * k * k.transpose();
+  for (const std::vector<Share>& shares : of_scan) {
+    add_shared(shares, shared_noise, pull);
   }
   const Eigen::LDLT<Eigen::MatrixXd> factored = normal.ldlt();
   const Eigen::MatrixXd half = factored.solve(pull);

@@ -128,6 +128,7 @@ class ScanModel {
     RigidTransform a_from_b;
     Eigen::Vector3d center_mm{0, 0, 0};
     Matrix6d information = Matrix6d::Zero();
+    Footprint of_a, of_b;
   };
 
   /// What takes a scan out of the model.

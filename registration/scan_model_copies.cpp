@@ -135,8 +135,9 @@ bool ScanModel::leaves_a_copy(int id) {
 }
 
 ScanModel::Pair ScanModel::Pair::turned() const {
-  const PairConstraint other = dubsar::turned({0, 1, a_from_b, center_mm, information});
-  return {measured_from.inverse(), other.a_from_b, other.center_mm, other.information};
+  const PairConstraint other = dubsar::turned({0, 1, a_from_b, center_mm, information, true, of_a, of_b});
+  return {measured_from.inverse(), other.a_from_b, other.center_mm,
+          other.information,       other.of_a,     other.of_b};
 }
 
 void ScanModel::hand_over(int from, int to) {

@@ -33,6 +33,8 @@ std::optional<ScanModel::Pair> ScanModel::measured_pair(int a, int b) const {
   pair.a_from_b = fit->on_from_moved;
   pair.center_mm = fit->center_mm;
   pair.information = fit->information;
+  pair.of_a = fit->of_on;
+  pair.of_b = fit->of_moved;
   return pair;
 }
 
@@ -84,8 +86,8 @@ Status ScanModel::relax_group(int group, const JobContext& job) {
   std::vector<PairConstraint> constraints;
   for (const auto& [key, pair] : pairs_) {
     if (place.contains(key.first) && place.contains(key.second)) {
-      constraints.push_back(
-          {place[key.first], place[key.second], pair.a_from_b, pair.center_mm, pair.information});
+      constraints.push_back({place[key.first], place[key.second], pair.a_from_b, pair.center_mm,
+                             pair.information, true, pair.of_a, pair.of_b});
     }
   }
   // What the stage says of scans of one placement: each against the first of its placement.

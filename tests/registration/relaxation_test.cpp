@@ -117,6 +117,40 @@ TEST(Relaxation, APairSaysTheSameTurned) {
   }
 }
 
+/// Scans in a row, each measured against the next at one of its ends: their errors add up. Taken for the same
+/// noise those of a scan's two ends cancelled, and the last of four was as sure as the first.
+TEST(Relaxation, SigmaGrowsAlongAChain) {
+  constexpr std::size_t kScans = 5;
+  std::vector<RigidTransform> start;
+  std::vector<PairConstraint> pairs;
+  for (std::size_t k = 0; k < kScans; ++k) {
+    start.push_back(testing::pose_of(0, 0, 0, {10.0 * static_cast<double>(k), 0, 0}));
+  }
+  for (std::size_t k = 0; k + 1 < kScans; ++k) {
+    PairConstraint pair;
+    pair.a = k;
+    pair.b = k + 1;
+    pair.a_from_b = start[k].inverse() * start[k + 1];
+    pair.information.diagonal() << Eigen::Vector3d::Constant(1e12), Eigen::Vector3d::Constant(1e4);
+    pair.of_a = {0, 1};
+    pair.of_b = {1, 0};
+    pairs.push_back(pair);
+  }
+  const std::vector<bool> fixed{true, false, false, false, false};
+  const std::vector<Eigen::Vector3d> centers_mm(kScans, Eigen::Vector3d::Zero());
+  JobContext job;
+  const auto variance_along = [&](std::size_t scan) {
+    const auto relaxed = relax(start, fixed, centers_mm, pairs, {}, job);
+    return relaxed ? (*relaxed)[scan].covariance(3, 3) : 0.0;
+  };
+  EXPECT_NEAR(variance_along(1), 1e-4, 1e-6);
+  EXPECT_NEAR(variance_along(4), 4e-4, 4e-6);
+  for (PairConstraint& pair : pairs) {
+    pair.of_a = pair.of_b = {1, 0};  // all at one place: what lies between two scans brings them together
+  }
+  EXPECT_NEAR(variance_along(4), 1e-4, 1e-6);
+}
+
 TEST(Relaxation, SaysWhatIsWrong) {
   JobContext job;
   Ring r = ring(1e-3, 3);
