@@ -194,14 +194,16 @@ Status take_sum_away(const fs::path& folder, Sums sums) {
 }
 
 bool is_set_aside(const fs::path& path) {
-  return std::ranges::any_of(
-      path, [](const fs::path& part) { return part.string().find(kAsideMark) != std::string::npos; });
+  return std::ranges::any_of(path, [](const fs::path& part) {
+    const std::string name = part.string();
+    return name.find(kAsideMark) != std::string::npos || name.find(kBeforeMark) != std::string::npos;
+  });
 }
 
-fs::path name_aside(const fs::path& path) {
+fs::path name_aside(const fs::path& path, const char* mark) {
   std::error_code ignored;
   for (int i = 1;; ++i) {
-    fs::path name = path.string() + kAsideMark + std::to_string(i);
+    fs::path name = path.string() + mark + std::to_string(i);
     if (!fs::exists(fs::symlink_status(name, ignored))) {
       return name;
     }
@@ -222,10 +224,10 @@ Result<fs::path> move_aside(const fs::path& path) {
   return aside;
 }
 
-Result<fs::path> copy_aside(const fs::path& path) {
+Result<fs::path> copy_aside(const fs::path& path, const char* mark) {
   std::error_code ignored;
-  for (int i = 1; fs::exists(path.string() + kAsideMark + std::to_string(i), ignored); ++i) {
-    fs::path kept = path.string() + kAsideMark + std::to_string(i);
+  for (int i = 1; fs::exists(path.string() + mark + std::to_string(i), ignored); ++i) {
+    fs::path kept = path.string() + mark + std::to_string(i);
     if (!fs::is_symlink(kept, ignored) && have_same_bytes(path, kept)) {
       return kept;
     }
@@ -234,7 +236,7 @@ Result<fs::path> copy_aside(const fs::path& path) {
   if (!bytes) {
     return move_aside(path);  // which needs no reading
   }
-  fs::path aside = name_aside(path);
+  fs::path aside = name_aside(path, mark);
   if (Status kept = write_file_atomically(aside, std::string_view(*bytes)); !kept) {
     return std::unexpected(kept.error());
   }

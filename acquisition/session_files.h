@@ -66,13 +66,17 @@ using Sums = std::multimap<std::string, FileSum>;
 /// Damaged originals are kept beside what takes their place, as NAME.damaged-1, -2, …; so is a folder that
 /// one lies in.
 inline constexpr const char* kAsideMark = ".damaged-";
+/// In place of it, of what was whole and had to be replaced in a mend.
+inline constexpr const char* kBeforeMark = ".before-";
 [[nodiscard]] bool is_set_aside(const std::filesystem::path& path);
 /// The first such name that is free.
-[[nodiscard]] std::filesystem::path name_aside(const std::filesystem::path& path);
+[[nodiscard]] std::filesystem::path name_aside(const std::filesystem::path& path,
+                                               const char* mark = kAsideMark);
 /// Moves a damaged file, or a folder with one, to its name aside, durably, and returns that name.
 [[nodiscard]] Result<std::filesystem::path> move_aside(const std::filesystem::path& path);
 /// Copies a damaged file to its name aside, durably, and returns that name; the file itself stays. Where the
 /// same bytes lie aside already, that is their name. What cannot be read is moved there.
-[[nodiscard]] Result<std::filesystem::path> copy_aside(const std::filesystem::path& path);
+[[nodiscard]] Result<std::filesystem::path> copy_aside(const std::filesystem::path& path,
+                                                       const char* mark = kAsideMark);
 
 }  // namespace dubsar::session

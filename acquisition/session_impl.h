@@ -22,7 +22,7 @@ struct SessionStore::Impl {
   std::optional<session::FolderLock> lock;
   std::optional<SqlDatabase> db;  ///< for reading: a copy in memory
   bool rebuilt = false;           ///< db was put together from what a damaged one left
-  session::Losses lost;           ///< for reading: what is, and is not noted in db
+  session::Losses lost;           ///< what is, and is not noted in db; for writing: unlisted grids alone
   SessionOpening opening;
   std::vector<int> damaged_grids;  ///< ids, as seen while opening
   mutable std::mutex mutex;        ///< of db and damaged_grids
@@ -49,9 +49,10 @@ namespace session {
 
 /// What the tables say that a file was when it was stored; nothing where none names it.
 [[nodiscard]] Result<std::optional<FileSum>> recorded_sum(SqlDatabase& db, const std::string& name);
-/// Opens session.sqlite for writing, rebuilding it when it is damaged.
+/// Opens session.sqlite for writing, rebuilding it when it is damaged. What is lost is noted in it; `lost`
+/// has the grids that prove it alone.
 [[nodiscard]] Result<SqlDatabase> open_for_writing(const std::filesystem::path& folder,
-                                                   SessionOpening& opening, bool& rebuilt);
+                                                   SessionOpening& opening, bool& rebuilt, Losses& lost);
 /// A copy of the database in memory, or what can be saved of it.
 [[nodiscard]] Result<SqlDatabase> open_for_reading(const std::filesystem::path& folder,
                                                    SessionOpening& opening, bool& rebuilt, Losses& lost);

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "acquisition/session_files.h"
 #include "acquisition/session_query.h"
 #include "acquisition/session_tables.h"
 #include "core/shell_word.h"
@@ -155,15 +156,28 @@ std::vector<Error> told_losses(const Losses& lost, const std::string& where, con
   const std::string mend =
       "bring it back from a copy (dubsar verify --repair --from COPY " + word_of(folder) + ")";
   std::vector<Error> out;
-  if (lost.more) {
+  if (lost.more && lost.unlisted > 0) {
+    out.push_back(missing_log_error(lost.unlisted, folder));
+  } else if (lost.more) {
     out.push_back({ErrorKind::kBadInput,
-                   "records are lost that nothing names: a part of the tables could not be read", where,
-                   mend});
+                   "records are lost that nothing names: a part of the tables could not be read, or their "
+                   "log was missing",
+                   where, mend});
   }
   for (const std::string& row : lost.rows) {
     out.push_back({ErrorKind::kBadInput, row + " is lost", where, mend});
   }
   return out;
+}
+
+Error missing_log_error(std::int64_t unlisted, const fs::path& folder) {
+  return {ErrorKind::kBadInput,
+          "records are lost that nothing names: the log is missing, or its end, for " +
+              std::to_string(unlisted) + " whole grids are in no table",
+          std::string(kDatabase) + "-wal",
+          "put it back before anything is written, or bring its records back from a copy (dubsar verify "
+          "--repair --from COPY " +
+              word_of(folder) + ")"};
 }
 
 std::string word_of(const fs::path& folder) {

@@ -24,6 +24,8 @@ inline constexpr const char* kAdopted = "scan adopted";
 struct Losses {
   std::set<std::string> rows;  ///< "events row 12", "documents row tablet"
   bool more = false;           ///< and rows that nothing names: what stood there could not be read
+  /// Whole grids that no table lists, where they prove that commits are missing; 0: they prove nothing.
+  std::int64_t unlisted = 0;
   [[nodiscard]] bool any() const { return more || !rows.empty(); }
 };
 
@@ -43,6 +45,9 @@ struct Losses {
 /// One error a row; `where` names the database. `folder` is what its mend is typed with.
 [[nodiscard]] std::vector<Error> told_losses(const Losses& lost, const std::string& where,
                                              const std::filesystem::path& folder);
+
+/// The error that a missing log is told as: `unlisted` whole grids are in no table.
+[[nodiscard]] Error missing_log_error(std::int64_t unlisted, const std::filesystem::path& folder);
 
 /// The session as a word of the command line that mends it: whoever reads this may sit at the window, or
 /// elsewhere than where it was started.

@@ -2,12 +2,14 @@
 // Copyright The Dubsar developers
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstdlib>
 
 #include "acquisition/session_impl.h"
 #include "acquisition/session_log.h"
 #include "acquisition/session_rebuild.h"
 #include "formats/atomic_file.h"
+#include "formats/grid_file.h"
 
 namespace dubsar::session {
 
@@ -79,6 +81,32 @@ Result<bool> tell_lost_commits(const fs::path& folder, SessionOpening& opening, 
   return true;
 }
 
+/// Grids that prove that commits are missing: every scan's row is committed before the next grid is stored,
+/// and whoever opens a session for writing takes in the one grid that a kill may have left without a row. So
+/// of two whole ones without a row one had it. `grids` lay there before the tables were read: another program
+/// may be storing scans. 0 where they prove nothing.
+std::int64_t unlisted_proof(const fs::path& folder, const std::vector<int>& grids, SqlDatabase& db) {
+  const auto is_unlisted = [&](int id) {
+    return !has_row(db, row_name("scans", std::to_string(id))) && verify_grid_file(folder / grid_name(id));
+  };
+  const std::int64_t unlisted = std::ranges::count_if(grids, is_unlisted);
+  return unlisted > 1 ? unlisted : 0;
+}
+
+/// Says so, once; the record says it from then on.
+Status note_missing_log(const fs::path& folder, SqlDatabase& db, SessionOpening& opening, Losses& lost) {
+  lost.unlisted = unlisted_proof(folder, grid_ids(folder), db);
+  if (lost.unlisted == 0) {
+    return {};
+  }
+  const Result<Losses> standing = standing_losses(db);
+  if (!standing || standing->more) {
+    return standing ? Status() : std::unexpected(standing.error());
+  }
+  opening.damage.push_back(missing_log_error(lost.unlisted, folder));
+  return note_losses(db, {{}, true});
+}
+
 /// Copies database and log to where the log can be played, for a session on a disk that cannot be written.
 Status copy_elsewhere(const fs::path& folder, SqlDatabase& memory) {
   std::error_code error;
@@ -125,7 +153,8 @@ Status snapshot(const fs::path& folder, SqlDatabase& memory) {
 
 }  // namespace
 
-Result<SqlDatabase> open_for_writing(const fs::path& folder, SessionOpening& opening, bool& rebuilt) {
+Result<SqlDatabase> open_for_writing(const fs::path& folder, SessionOpening& opening, bool& rebuilt,
+                                     Losses& lost) {
   const fs::path path = folder / kDatabase;
   if (Status back = bring_back_log(folder); !back) {
     return std::unexpected(back.error());
@@ -167,6 +196,9 @@ Result<SqlDatabase> open_for_writing(const fs::path& folder, SessionOpening& ope
     }
     (void)db->execute(kMerge);  // what is left behind the damage would be told again after a kill
   }
+  if (Status told = rebuilt ? Status() : note_missing_log(folder, *db, opening, lost); !told) {
+    return std::unexpected(told.error());
+  }
   db->keep_log(false);
   if (Status synced = sync_folder(folder); !synced) {
     return std::unexpected(synced.error());
@@ -190,6 +222,7 @@ Result<SqlDatabase> open_for_reading(const fs::path& folder, SessionOpening& ope
   }
   lost.more = *commits_lost;
   const bool gone = is_gone(folder);
+  const std::vector<int> grids = grid_ids(folder);
   std::optional<Error> fault;
   if (gone) {
     fault = gone_error(where);  // an empty file opens without a fault, as a database without a row
@@ -199,6 +232,11 @@ Result<SqlDatabase> open_for_reading(const fs::path& folder, SessionOpening& ope
     fault = copied.error();
   }
   if (!fault) {
+    lost.unlisted = lost.more ? 0 : unlisted_proof(folder, grids, *memory);
+    if (lost.unlisted > 0) {
+      lost.more = true;
+      opening.damage.push_back(missing_log_error(lost.unlisted, folder));
+    }
     return memory;
   }
   if (fault->kind != ErrorKind::kBadInput && !gone) {

@@ -156,7 +156,7 @@ Result<SessionStore> SessionStore::open_for_writing(const fs::path& folder, OnDa
   if (const int removed = session::remove_temporaries(folder); removed > 0) {
     impl->opening.notes.push_back("half-written files removed: " + std::to_string(removed));
   }
-  Result<SqlDatabase> db = session::open_for_writing(folder, impl->opening, impl->rebuilt);
+  Result<SqlDatabase> db = session::open_for_writing(folder, impl->opening, impl->rebuilt, impl->lost);
   if (!db) {
     return std::unexpected(db.error());
   }

@@ -182,8 +182,9 @@ void check_records(SqlDatabase& db, const fs::path& folder, VerifyReport& report
 
 Result<SessionStore::Impl::Unlisted> SessionStore::Impl::unlisted() {
   // Of a scan whose row was lost the record still tells whether it was taken out, as far as it goes. Where
-  // nothing was rebuilt it is one that a kill left unlisted.
-  Result<session::Losses> standing = rebuilt ? session::standing_losses(*db) : session::Losses();
+  // nothing was rebuilt, and no log is missing, it is one that a kill left unlisted.
+  const bool lacks = rebuilt || lost.unlisted > 0;
+  Result<session::Losses> standing = lacks ? session::standing_losses(*db) : session::Losses();
   Result<std::map<int, session::DropState>> drops = session::dropped_by_record(*db);
   if (!standing || !drops) {
     return std::unexpected(standing ? drops.error() : standing.error());
@@ -287,6 +288,7 @@ Result<VerifyReport> SessionStore::verify(JobContext& job) const {
     }
     lost->rows.insert(impl_->lost.rows.begin(), impl_->lost.rows.end());
     lost->more = lost->more || impl_->lost.more;
+    lost->unlisted = impl_->lost.unlisted;
     report.lost = session::told_losses(*lost, session::kDatabase, folder);
   }
   const bool database_whole = report.damaged.empty();  // as far as its rows tell

@@ -2,6 +2,9 @@
 // Copyright The Dubsar developers
 #include "station/deliverables.h"
 
+#include <algorithm>
+#include <functional>
+
 #include "archive/behind_page.h"
 #include "archive/png.h"
 #include "archive/report_pictures.h"
@@ -10,7 +13,9 @@
 #include "formats/mesh_io.h"
 #include "formats/poses_json.h"
 #include "formats/red_map_json.h"
+#include "station/kept_surface.h"
 #include "station/picture_file.h"
+#include "station/selected_mesh.h"
 #include "station/session_pages.h"
 
 namespace dubsar {
@@ -19,8 +24,11 @@ namespace fs = std::filesystem;
 
 namespace {
 
-Result<Deliverables> write_all(SessionStore& store, const ReportInput& input, const FileLabel& label,
-                               bool with_mesh, JobContext& job) {
+/// Whether a file, by its name in the session, is to be written.
+using Wanted = std::function<bool(const std::string&)>;
+
+Result<Deliverables> write_wanted(SessionStore& store, const ReportInput& input, const FileLabel& label,
+                                  const Wanted& wanted, JobContext& job) {
   Deliverables files;
   for (const char* name : {"mesh", "export"}) {
     if (const Status made = make_folder(store.folder() / name); !made) {
@@ -28,6 +36,9 @@ Result<Deliverables> write_all(SessionStore& store, const ReportInput& input, co
     }
   }
   const auto keep = [&](const char* name, fs::path& into, const auto& write) {
+    if (!wanted(name)) {
+      return Status();
+    }
     Status kept = store.replace_file(name, write);
     if (kept) {
       into = store.folder() / name;
@@ -48,9 +59,9 @@ Result<Deliverables> write_all(SessionStore& store, const ReportInput& input, co
     return std::unexpected(report.error());
   }
   job.progress("writing results", 0.5);
-  if (with_mesh && !input.model.faces.empty()) {
+  if (!input.model.faces.empty()) {
     const auto write = [&](const fs::path& file) { return write_mesh(file, input.model, label); };
-    if (Status s = keep("mesh/model.ply", files.mesh, write); !s) {
+    if (Status s = keep(kSessionMesh, files.mesh, write); !s) {
       return std::unexpected(s.error());
     }
   }
@@ -102,11 +113,21 @@ Result<Deliverables> write_all(SessionStore& store, const ReportInput& input, co
 
 Result<Deliverables> write_deliverables(SessionStore& store, const ReportInput& input, const FileLabel& label,
                                         JobContext& job) {
-  return write_all(store, input, label, true, job);
+  return write_wanted(
+      store, input, label, [](const std::string&) { return true; }, job);
+}
+
+Result<Deliverables> write_named(SessionStore& store, const ReportInput& input, const FileLabel& label,
+                                 const std::vector<std::string>& names, JobContext& job) {
+  const auto is_named = [&](const std::string& name) {
+    return std::ranges::find(names, name) != names.end();
+  };
+  return write_wanted(store, input, label, is_named, job);
 }
 
 Status write_pages(SessionStore& store, const ReportInput& input, const FileLabel& label, JobContext& job) {
-  const Result<Deliverables> files = write_all(store, input, label, false, job);
+  const auto is_page = [](const std::string& name) { return name != kSessionMesh; };
+  const Result<Deliverables> files = write_wanted(store, input, label, is_page, job);
   return files ? Status() : std::unexpected(files.error());
 }
 

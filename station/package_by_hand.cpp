@@ -7,22 +7,22 @@
 
 #include <algorithm>
 #include <optional>
+#include <string>
 #include <system_error>
+#include <vector>
 
 #include "formats/atomic_file.h"
 #include "formats/corrections_json.h"
 #include "formats/json_node.h"
-#include "formats/mesh_io.h"
 #include "formats/selections_json.h"
 #include "station/package_content.h"
+#include "station/selected_mesh.h"
 
 namespace dubsar {
 
 namespace {
 
 namespace fs = std::filesystem;
-
-constexpr const char* kSessionMesh = "mesh/model.ply";
 
 /// A file of the session as it goes along to the bit, damaged or not.
 struct ByHand {
@@ -89,15 +89,14 @@ Result<std::string> mesh_of(PackageContent& content, const SelectionFile& file) 
   if (file.surface_xxh128 == surface_digest(content.mesh())) {
     return "model/" + content.stem + ".ply";
   }
-  const fs::path own = content.store.folder() / kSessionMesh;
-  const Result<Mesh> mesh = read_mesh(own);
-  if (!mesh || file.surface_xxh128 != surface_digest(*mesh)) {
+  const std::vector<std::string> own = meshes_of_selections(content.store.folder(), file.surface_xxh128);
+  if (own.empty()) {
     return std::string();
   }
-  const std::string kept = std::string("kept/") + kSessionMesh;
+  const std::string kept = "kept/" + own.front();
   std::error_code unknown;
   if (!fs::exists(content.root / kept, unknown)) {
-    const Result<std::string> bytes = read_whole_file(own);
+    const Result<std::string> bytes = read_whole_file(content.store.folder() / own.front());
     const Status written =
         bytes ? content.text(kept, *bytes,
                              "the mesh as the session keeps it, made of other scans or places "
@@ -138,6 +137,27 @@ Status add_selections(PackageContent& content) {
                       : "faces and vertices by their numbers in " + *mesh));
 }
 
+/// Meshes whose selections were put aside since: those lie in kept/, too.
+Status add_selected_meshes(PackageContent& content) {
+  for (const std::string& name : kept_selected_meshes(content.store.folder())) {
+    std::error_code unknown;
+    const std::string kept = "kept/" + name;
+    const auto& whole = content.source.found().whole;
+    if (fs::exists(content.root / kept, unknown) || std::ranges::find(whole, name) == whole.end()) {
+      continue;
+    }
+    const Result<std::string> bytes = read_whole_file(content.store.folder() / name);
+    const Status written =
+        bytes ? content.text(kept, *bytes,
+                             "a mesh that earlier selections of a person are of: formats/mesh.txt")
+              : Status(std::unexpected(bytes.error()));
+    if (!written) {
+      return written;
+    }
+  }
+  return {};
+}
+
 }  // namespace
 
 bool is_by_hand(const std::string& name) {
@@ -145,8 +165,12 @@ bool is_by_hand(const std::string& name) {
 }
 
 Status add_by_hand(PackageContent& content) {
-  const Status added = add_corrections(content);
-  return added ? add_selections(content) : added;
+  for (const auto& add : {add_corrections, add_selections, add_selected_meshes}) {
+    if (const Status added = add(content); !added) {
+      return added;
+    }
+  }
+  return {};
 }
 
 }  // namespace dubsar

@@ -92,7 +92,7 @@ Status add_left_out(PackageContent& content) {
   }
   if (!found.set_aside.empty()) {
     content.left_out.push_back(
-        "Damaged originals that were set aside in the session when it was mended are not here: " +
+        "Originals that were set aside in the session when it was mended are not here: " +
         file_list(found.set_aside) + ".");
   }
   if (!found.extra.empty()) {

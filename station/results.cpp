@@ -19,8 +19,10 @@
 #include "formats/red_map_json.h"
 #include "formats/sha2.h"
 #include "planning/checklist.h"
+#include "station/kept_surface.h"
 #include "station/lost_scans.h"
 #include "station/range_camera_record.h"
+#include "station/selected_mesh.h"
 #include "station/session_name.h"
 #include "station/session_scans.h"
 #include "station/tablet_label.h"
@@ -346,12 +348,23 @@ std::optional<RigidTransform> stored_tablet_from_model(const SessionStore& store
   return document->status("") ? std::optional(lies) : std::nullopt;
 }
 
-Result<Deliverables> keep_deliverables(SessionStore& store, const ReportInput& input, JobContext& job) {
+namespace {
+
+/// All where no names are given.
+Result<Deliverables> keep_files(SessionStore& store, const ReportInput& input,
+                                const std::vector<std::string>* names, JobContext& job) {
   const Result<FileLabel> label = label_of_scans(store);
   if (!label) {
     return std::unexpected(label.error());
   }
-  Result<Deliverables> files = write_deliverables(store, input, *label, job);
+  const bool with_mesh = names == nullptr || std::ranges::find(*names, kSessionMesh) != names->end();
+  if (const Status kept =
+          with_mesh && !input.model.faces.empty() ? keep_selected_mesh(store, input.model) : Status();
+      !kept) {
+    return std::unexpected(kept.error());
+  }
+  Result<Deliverables> files = names == nullptr ? write_deliverables(store, input, *label, job)
+                                                : write_named(store, input, *label, *names, job);
   if (!files) {
     return files;
   }
@@ -371,6 +384,17 @@ Result<Deliverables> keep_deliverables(SessionStore& store, const ReportInput& i
     }
   }
   return files;
+}
+
+}  // namespace
+
+Result<Deliverables> keep_deliverables(SessionStore& store, const ReportInput& input, JobContext& job) {
+  return keep_files(store, input, nullptr, job);
+}
+
+Result<Deliverables> keep_deliverables(SessionStore& store, const ReportInput& input,
+                                       const std::vector<std::string>& names, JobContext& job) {
+  return keep_files(store, input, &names, job);
 }
 
 }  // namespace dubsar

@@ -16,6 +16,7 @@
 #include "formats/json_node.h"
 #include "formats/json_text.h"
 #include "formats/poses_json.h"
+#include "station/kept_surface.h"
 #include "station/picture_file.h"
 #include "station/results.h"
 #include "station/session_wedges.h"
@@ -177,10 +178,7 @@ Result<bool> keep_pages_anew(SessionStore& store, const PlannedAgain& planned, J
     return taken ? Result<bool>(false) : std::unexpected(taken.error());
   }
   PageFacts facts = page_facts_of(store);
-  if (!facts.wedges.empty() && !stored_wedges(store, results.mesh, job)) {
-    facts.wedges =
-        "They were not measured anew: those in analysis/wedges.json are of the mesh as it was before.";
-  }
+  facts.wedges = wedges_said(store, results.mesh, facts.wedges, job);
   const Result<FileLabel> label = label_of_scans(store);
   const Status written = label ? write_pages(store, report_input(results, *planned.stage, facts), *label, job)
                                : std::unexpected(label.error());

@@ -10,6 +10,7 @@
 #include "acquisition/sign_off_log.h"
 #include "core/log.h"
 #include "station/followed_word.h"
+#include "station/kept_surface.h"
 #include "station/not_conclusive.h"
 #include "station/plan_again.h"
 #include "station/session_faults.h"
@@ -115,8 +116,7 @@ Result<Signing> sign_verdict(const std::filesystem::path& session, SignOff wante
   // The pages show it; should they fail to be written, it still stands.
   results.checklist.sign_off = CheckedSignOff{*made, {}};
   out.checklist = results.checklist;
-  const Result<Deliverables> files =
-      keep_deliverables(store, report_input(results, *planned->stage, page_facts_of(store)), job);
+  const Result<Deliverables> files = keep_all_anew(store, *planned, job);
   if (files) {
     out.page = files->checklist;
   } else {

@@ -204,7 +204,7 @@ int print_session(const std::string& path, const Found& found, const std::option
   print_damage("lost", report.lost);
   print_names("no checksum kept", report.unrecorded);
   print_names("not of this session", report.extra);
-  print_names("damaged original, kept", report.set_aside);
+  print_names("original, kept", report.set_aside);
   print_damage("behind", found.behind);
   print_damage("damaged sign-off", signed_off.damage);
   for (const CheckedSignOff& one : signed_off.sign_offs) {

@@ -87,6 +87,56 @@ TEST_F(SessionLossesTest, ADamagedBackupOfAWholeDatabaseIsKeptToo) {
   EXPECT_FALSE(fs::exists(folder_ / "session.backup.sqlite.damaged-2")) << "the one in its place is whole";
 }
 
+TEST_F(SessionLossesTest, GridsThatNoTableListsProveThatALogIsMissing) {
+  const fs::path killed = temporary_.path() / "killed";
+  leave_with_log(killed);  // one scan
+  fs::copy(killed, copy_ / "whole", fs::copy_options::recursive);
+  fs::remove(killed / "session.sqlite-wal");
+  fs::remove(killed / "session.sqlite-shm");
+  const auto lost_of = [&](const fs::path& folder) {
+    return SessionStore::open(folder, kReadOnly).value().verify(job_).value().lost;
+  };
+  EXPECT_THAT(lost_of(killed), IsEmpty()) << "a kill between a grid and its row leaves as much";
+  fs::copy(folder_ / "grids/002.grid", killed / "grids/001.grid");
+  ASSERT_EQ(lost_of(killed).size(), 1U);
+  EXPECT_THAT(lost_of(killed)[0].line(),
+              HasSubstr("session.sqlite-wal: records are lost that nothing names: the log is missing, or its "
+                        "end, for 2 whole grids are in no table"));
+  EXPECT_FALSE(SessionStore::open(killed, kReadWrite, SessionStore::OnDamage::kRefuse));
+  {
+    const SessionStore store = SessionStore::open(killed).value();
+    ASSERT_EQ(store.opening().damage.size(), 1U);
+    EXPECT_THAT(store.opening().damage[0].what, HasSubstr("the log is missing"));
+    EXPECT_THAT(store.scans().value().at(1).remark, HasSubstr("it may have been taken out"));
+    EXPECT_THAT(store.load_grid(1).value().z, small_grid(2).z);
+  }
+  EXPECT_THAT(SessionStore::open(killed)->opening().damage, IsEmpty()) << "it is told once";
+  ASSERT_EQ(lost_of(killed).size(), 1U) << "and stands in the record";
+  EXPECT_THAT(lost_of(killed)[0].what, HasSubstr("or their log was missing"));
+  const SessionStore mended = SessionStore::open_with_copy(killed, copy_ / "whole").value();
+  EXPECT_EQ(mended.load_document("document 11").value(), "{}");
+}
+
+TEST_F(SessionLossesTest, AMissingLogIsToldAndBroughtBackFromACopyAtOnce) {
+  const fs::path killed = temporary_.path() / "killed";
+  const int status = test::in_child([&]() -> int {
+    Result<SessionStore> store = SessionStore::open_or_create(killed);
+    bool good = store.has_value();
+    for (int i = 0; i < 3; ++i) {
+      good = good && store->add_grid(small_grid(i));
+    }
+    good = good && store->drop_scan(1, "blurred");
+    ::_exit(good ? 0 : 1);
+  });
+  ASSERT_EQ(status, 0);
+  fs::copy(killed, copy_ / "whole", fs::copy_options::recursive);
+  fs::remove(killed / "session.sqlite-wal");
+  fs::remove(killed / "session.sqlite-shm");
+  const SessionStore mended = SessionStore::open_with_copy(killed, copy_ / "whole").value();
+  EXPECT_EQ(mended.scans().value().at(1).note, "blurred");
+  EXPECT_THAT(mended.verify(job_)->lost, IsEmpty());
+}
+
 TEST_F(SessionLossesTest, TheSameDamagedBytesLieAsideOnce) {
   fs::resize_file(database_, fs::file_size(database_) / 2);
   const VerifyReport found = SessionStore::open(folder_, kReadOnly)->verify(job_).value();

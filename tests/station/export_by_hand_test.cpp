@@ -140,6 +140,39 @@ TEST_F(ExportByHand, SelectionsOfTheMeshBeforeHaveThatMeshBesideThem) {
                               HasSubstr("export/report.html")));
 }
 
+TEST_F(ExportByHand, SelectionsKeepTheirMeshWhereASignedOneTakesItsPlace) {
+  select();
+  const std::string before = bytes_of(session_ / "mesh/model.ply");
+  ASSERT_EQ(run_command({"session", "drop", session_.string(), "2", "--why", "dust"}).status, 0);
+  run_command({"register", session_.string()});
+  run_command({"plan", session_.string()});
+  const Outcome made =
+      run_command({"session", "sign", session_.string(), "--name", "A", "--incomplete", "a trial"});
+  ASSERT_EQ(made.status, 0) << made.err;
+  EXPECT_THAT(made.err, HasSubstr("stays as mesh/model.of-selections-1.ply"));
+  EXPECT_FALSE(bytes_of(session_ / "mesh/model.ply") == before);
+  const std::string kept = "mesh/model.of-selections-1.ply";
+  EXPECT_TRUE(bytes_of(session_ / kept) == before);
+  const Outcome part = run_command({"mesh", "part", (session_ / kept).string(), "--selection", "line 3", "-o",
+                                    at("part of it.ply").string()});
+  EXPECT_EQ(part.status, 0) << part.err;
+  // What is signed is of one surface: so many wedges as the report says, in the session and in its package.
+  const auto wedges = nlohmann::json::parse(bytes_of(session_ / "analysis/wedges.json"));
+  const std::string count = wedges["wedges"].empty()
+                                ? "No wedges were found; " + std::to_string(wedges["rejected"].size())
+                                : std::to_string(wedges["wedges"].size()) + " wedges were measured";
+  EXPECT_THAT(bytes_of(session_ / "export/report.html"), HasSubstr(count));
+  const Outcome done = pack();
+  ASSERT_EQ(done.status, 0) << done.err;
+  EXPECT_THAT(done.err, Not(HasSubstr("measured now"))) << "the session has those of its mesh";
+  EXPECT_TRUE(packed("kept/" + kept) == before);
+  EXPECT_THAT(readme(), HasSubstr("by their numbers in kept/" + kept));
+  EXPECT_THAT(packed("report/report.html"), HasSubstr(count));
+  EXPECT_THAT(packed("session/run.json"), HasSubstr(count));
+  EXPECT_EQ(nlohmann::json::parse(packed("wedges/wedges.json"))["wedges"].size(), wedges["wedges"].size());
+  EXPECT_EQ(run_command({"verify", session_.string()}).status, 0);
+}
+
 TEST_F(ExportByHand, ACorrectionThatTheSessionHasLostIsNotReplacedInThePackage) {
   correct();
   ASSERT_EQ(pack().status, 0);

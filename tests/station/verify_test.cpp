@@ -124,6 +124,42 @@ TEST_F(Verify, DerivedFilesAreMadeAnewByteForByte) {
   }
 }
 
+TEST_F(Verify, WhatIsWholeStaysAsItIsBesideWhatIsMended) {
+  // Mesh and wedges of three scans, pages of two.
+  run_command({"session", "drop", session_.string(), "2"});
+  run_command({"register", session_.string()});
+  run_command({"plan", session_.string()});
+  const fs::path before = folder_->path() / "before the mend";
+  fs::copy(session_, before, fs::copy_options::recursive);
+  const auto expect_all_but = [&](const std::vector<std::string>& made) {
+    for (const char* folder : {"mesh", "analysis", "export"}) {
+      for (const auto& entry : fs::directory_iterator(before / folder)) {
+        const std::string name = entry.path().lexically_relative(before).generic_string();
+        EXPECT_TRUE(std::ranges::find(made, name) != made.end() ||
+                    bytes_of(session_ / name) == bytes_of(before / name))
+            << name;
+      }
+    }
+  };
+  std::ofstream(session_ / "export/six_views.png", std::ios::app) << "x";
+  EXPECT_EQ(verify(0, {"--repair"})["repair"]["made_anew"], nlohmann::json({"export/six_views.png"}));
+  expect_all_but({"export/six_views.png"});
+  // The wedges themselves are measured on the mesh that stands.
+  fs::resize_file(session_ / "analysis/wedges.json", 10);
+  EXPECT_EQ(verify(0, {"--repair"})["repair"]["made_anew"], nlohmann::json({"analysis/wedges.json"}));
+  expect_all_but({"export/six_views.png", "analysis/wedges.json"});
+  // A mesh that no scans give any more comes as another one, and what was measured on it with it.
+  test::flip_byte(session_ / "mesh/model.ply", 5000);
+  const std::string wedges = bytes_of(session_ / "analysis/wedges.json");
+  const auto report = verify(0, {"--repair"});
+  EXPECT_THAT(report["repair"]["made_anew"].get<std::vector<std::string>>(),
+              testing::IsSupersetOf({"mesh/model.ply", "analysis/wedges.json", "export/report.html"}));
+  EXPECT_THAT(report["set_aside"].get<std::vector<std::string>>(),
+              testing::IsSupersetOf({"mesh/model.ply.damaged-1", "analysis/wedges.json.before-1"}));
+  EXPECT_TRUE(bytes_of(session_ / "analysis/wedges.json.before-1") == wedges);
+  EXPECT_THAT(report["behind"], IsEmpty());
+}
+
 TEST_F(Verify, AGridComesBackFromACopyAndFromNowhereElse) {
   test::flip_byte(session_ / "grids/001.grid", 3000);
   test::flip_byte(session_ / "mesh/model.ply", 5000);

@@ -113,8 +113,16 @@ constexpr EnginePhrase kStored[] = {
      "ihre Aufzeichnungen sind beschädigt, und nichts wurde geändert: "},
     {"mend them first, from a copy where there is one (dubsar verify --repair --from COPY ",
      "erst diese heilen, aus einer Kopie, wo es eine gibt (dubsar verify --repair --from KOPIE "},
-    {"records are lost that nothing names: a part of the tables could not be read",
-     "Aufzeichnungen sind verloren, die nichts nennt: ein Teil der Tabellen war nicht lesbar"},
+    {"records are lost that nothing names: a part of the tables could not be read, or their log was missing",
+     "Aufzeichnungen sind verloren, die nichts nennt: ein Teil der Tabellen war nicht lesbar, oder ihr "
+     "Protokoll fehlte"},
+    {"records are lost that nothing names: the log is missing, or its end, for ",
+     "Aufzeichnungen sind verloren, die nichts nennt: das Protokoll fehlt, oder sein Ende, denn "},
+    {" whole grids are in no table", " ganze Raster stehen in keiner Tabelle"},
+    {"put it back before anything is written, or bring its records back from a copy (dubsar verify --repair "
+     "--from COPY ",
+     "es zurücklegen, ehe etwas geschrieben wird, oder seine Aufzeichnungen aus einer Kopie zurückholen "
+     "(dubsar verify --repair --from KOPIE "},
     {" is lost", " ist verloren"},
     {"records of it are lost: it may have been taken out",
      "Aufzeichnungen von ihm sind verloren: vielleicht war er herausgenommen"},

@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright The Dubsar developers
+#include "station/selected_mesh.h"
+
+#include <fmt/format.h>
+
+#include <optional>
+#include <system_error>
+
+#include "core/log.h"
+#include "formats/atomic_file.h"
+#include "formats/mesh_io.h"
+#include "formats/selections_json.h"
+
+namespace dubsar {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr const char* kSelections = "analysis/selections.json";
+
+std::string kept_name(int n) {
+  return fmt::format("mesh/model.of-selections-{}.ply", n);
+}
+
+bool is_there(const fs::path& file) {
+  std::error_code unknown;
+  return fs::exists(fs::symlink_status(file, unknown));
+}
+
+bool is_of(const fs::path& mesh, const std::string& surface_xxh128) {
+  const Result<Mesh> read = read_mesh(mesh);
+  return read && surface_digest(*read) == surface_xxh128;
+}
+
+}  // namespace
+
+std::vector<std::string> meshes_of_selections(const fs::path& session, const std::string& surface_xxh128) {
+  std::vector<std::string> out;
+  if (is_there(session / kSessionMesh) && is_of(session / kSessionMesh, surface_xxh128)) {
+    out.emplace_back(kSessionMesh);
+  }
+  for (const std::string& name : kept_selected_meshes(session)) {
+    if (is_of(session / name, surface_xxh128)) {
+      out.push_back(name);
+    }
+  }
+  return out;
+}
+
+std::vector<std::string> kept_selected_meshes(const fs::path& session) {
+  std::vector<std::string> out;
+  for (int n = 1; is_there(session / kept_name(n)); ++n) {
+    out.push_back(kept_name(n));
+  }
+  return out;
+}
+
+Status keep_selected_mesh(SessionStore& store, const Mesh& next) {
+  const fs::path& session = store.folder();
+  if (!is_there(session / kSelections) || !is_there(session / kSessionMesh)) {
+    return {};
+  }
+  const Result<SelectionFile> file = read_selections(session / kSelections);
+  if (!file || file->selections.empty() || file->surface_xxh128 == surface_digest(next)) {
+    return {};
+  }
+  const std::vector<std::string> there = meshes_of_selections(session, file->surface_xxh128);
+  if (there.size() != 1 || there.front() != kSessionMesh) {
+    return {};  // nowhere, or kept before
+  }
+  const Result<std::string> bytes = read_whole_file(session / kSessionMesh);
+  if (!bytes) {
+    return std::unexpected(bytes.error());
+  }
+  const std::string name = kept_name(static_cast<int>(kept_selected_meshes(session).size()) + 1);
+  const Status kept = store.replace_file(
+      name, [&](const fs::path& to) { return write_file_atomically(to, std::string_view(*bytes)); });
+  if (kept) {
+    log_info(
+        fmt::format("the mesh that {} is of stays as {}: a mesh of other scans or places takes its place",
+                    kSelections, name));
+  }
+  return kept;
+}
+
+}  // namespace dubsar
