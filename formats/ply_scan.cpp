@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "core/number_text.h"
+#include "core/seen_all_round.h"
 #include "core/units.h"
 #include "formats/bytes_left_over.h"
 #include "formats/colour_values.h"
@@ -228,6 +229,16 @@ std::string settle_spacing(RangeGrid& grid, bool in_its_unit) {
   return {};
 }
 
+/// What went round a body on a turntable is no range grid. Told and not refused: samples that scatter across
+/// the view by more than they lie apart look the same.
+std::string of_all_sides(const RangeGrid& grid) {
+  constexpr double kMostTurnedAway = 1.0 / 3.0;
+  return grid.spacing_mm > 0 && share_turned_away(grid) > kMostTurnedAway
+             ? "it is seen from all sides, while a range grid shows one: cut it into views of at most 120 "
+               "degrees, a file each"
+             : "";
+}
+
 Status check_sizes(const PlyHeader& header, const std::optional<GridSize>& size, const std::string& name) {
   const PlyElement* vertex = header.element("vertex");
   const PlyElement* grid = header.element("range_grid");
@@ -347,11 +358,14 @@ Result<ScanData> read_ply_scan(std::string_view bytes, const std::string& name,
   // The spacing is counted across the direction. One that was written for other units says nothing.
   const bool seen_from = header->info_value(ply_info::kDirection) || grid.view.camera_mm;
   const std::string direction = seen_from ? std::string() : settle_direction(grid);
+  const double told_spacing_mm = grid.spacing_mm;
   const std::string spacing = settle_spacing(grid, said && *said == mm);
   if (const Status precise = check_precision(grid, name); !precise) {
     return std::unexpected(precise.error());
   }
-  for (const std::string& remark : {left_over, spacing, direction}) {
+  const bool is_mixed_up = told_spacing_mm > 0 && grid.spacing_mm > kMixedUpFrom * told_spacing_mm;
+  const std::string sides = is_mixed_up ? std::string() : of_all_sides(grid);
+  for (const std::string& remark : {left_over, spacing, direction, sides}) {
     if (!remark.empty() && options.remark) {
       options.remark(grid.source, remark);
     }

@@ -200,9 +200,13 @@ std::vector<ForeignFound> ForeignMatter::find(std::span<const ScanPose> poses) {
   for (const auto& [witness, pose] : placed) {
     if (!witness->matter.empty()) {
       const double mm2 = witness->grid.spacing_mm * witness->grid.spacing_mm;
+      std::size_t left = 0;
+      for (std::size_t i = 0; i < witness->grid.size(); ++i) {
+        left += witness->grid.valid[i] != 0 && witness->matter[i] == Matter::kTablet ? 1 : 0;
+      }
       out.push_back({pose->id, mm2 * static_cast<double>(witness->count(Matter::kForeign)),
-                     mm2 * static_cast<double>(witness->count(Matter::kDoubtful)),
-                     witness->looked_through_by});
+                     mm2 * static_cast<double>(witness->count(Matter::kDoubtful)), witness->looked_through_by,
+                     mm2 * static_cast<double>(left)});
     }
   }
   return out;

@@ -28,6 +28,10 @@ struct ForeignFound {
   double foreign_mm2 = 0;  ///< as the scanner sees it: samples times µ²
   double doubtful_mm2 = 0;
   std::vector<int> witnesses;  ///< scans that saw through it, by id
+  double left_mm2 = 0;         ///< of all other samples
+
+  /// Next to nothing else is in it: its pose is wrong, or the thing lay over all that it saw.
+  [[nodiscard]] bool is_all() const { return left_mm2 + doubtful_mm2 < 0.02 * foreign_mm2; }
 };
 
 /// Finds the samples of registered scans that are not of the tablet. A hand moves between scans, clay does

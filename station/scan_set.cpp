@@ -15,6 +15,7 @@
 #include "formats/files_below.h"
 #include "formats/pins_json.h"
 #include "formats/rig_json.h"
+#include "station/alike_remarks.h"
 #include "station/pin_faults.h"
 #include "station/session_drives.h"
 #include "station/session_pins.h"
@@ -138,6 +139,7 @@ Status load_folder(const fs::path& path, const ScanSetOptions& options, const Sc
   if (!source) {
     return std::unexpected(source.error());
   }
+  AlikeRemarks remarks;
   const double count = static_cast<double>(source->capabilities().scan_count.value_or(10));
   for (int read = 0;; ++read) {
     job.progress("reading scans", std::min(1.0, read / count));
@@ -154,7 +156,9 @@ Status load_folder(const fs::path& path, const ScanSetOptions& options, const Sc
       break;
     }
     for (const std::string& remark : source->record().remarks) {
-      tell((*grid)->source + ": " + remark, options);
+      if (const std::string line = remarks.add((*grid)->source, remark); !line.empty()) {
+        tell(line, options);
+      }
     }
     StationScan prepared = prepare_scan(set.numbered++, std::move(**grid), set.pins);
     grid->reset();
@@ -168,6 +172,9 @@ Status load_folder(const fs::path& path, const ScanSetOptions& options, const Sc
     if (const Status kept = keep(std::move(prepared), options, visit, set); !kept) {
       return kept;
     }
+  }
+  for (const std::string& line : remarks.rest()) {
+    tell(line, options);
   }
   for (const Error& error : set.left_out) {
     if (!set.scans.empty()) {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <map>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
@@ -14,9 +15,11 @@
 namespace dubsar {
 
 /// For people, of scans by their names (by id), one line each: which overlap no other, and which lie apart
-/// where they do.
+/// where they do: of many pairs the scans that seem at fault, in one line.
 [[nodiscard]] std::vector<std::string> warnings_of_places(const Stitcher& stitcher,
                                                           const std::map<int, std::string>& names);
+/// The pairs that lie apart: [{"ids":[0,3],"mm":0.21}].
+[[nodiscard]] nlohmann::ordered_json apart_json(const Stitcher& stitcher);
 
 /// That a scan is no part of the mesh, and why. `word`, what the scan is (`unsure`), and `reason` may be
 /// empty.

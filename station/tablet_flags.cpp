@@ -51,8 +51,18 @@ std::vector<int> TabletFlags::follow(std::span<const ScanPose> poses) {
   return changed;
 }
 
+std::string reason_of_all(const ForeignFound& found) {
+  return fmt::format(
+      "all of it stands in the way of {}: its pose is wrong, or something lay over all of it; register it "
+      "again",
+      listed(found.witnesses));
+}
+
 std::string sentence_of(const ForeignFound& found) {
   constexpr double kNothingMm2 = 0.5;
+  if (found.is_all()) {
+    return fmt::format("scan {}: {}", found.id, reason_of_all(found));
+  }
   std::string text = fmt::format("something was in the way of scan {}: ", found.id);
   if (found.foreign_mm2 >= kNothingMm2) {
     text += fmt::format("{:.0f} mm² of it are left out (looked through by {})", found.foreign_mm2,

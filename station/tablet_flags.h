@@ -23,6 +23,8 @@ namespace dubsar {
 
 /// For people: what was left out, why, and what remains to be done.
 [[nodiscard]] std::string sentence_of(const ForeignFound& found);
+/// The same of a scan of which nothing is left (ForeignFound::is_all()), without its name.
+[[nodiscard]] std::string reason_of_all(const ForeignFound& found);
 
 /// The flags of many scans, each without what the others show to be foreign in it, as the poses come and go.
 class TabletFlags {

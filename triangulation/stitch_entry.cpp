@@ -3,6 +3,7 @@
 #include "triangulation/stitch_entry.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <functional>
 #include <utility>
@@ -114,6 +115,25 @@ std::vector<int> without_surface(const Entries& entries) {
     if (!has) {
       out.push_back(id);
     }
+  }
+  return out;
+}
+
+std::map<int, double> moved_mm(const Entries& entries) {
+  std::map<int, double> out;
+  for (const auto& [key, entry] : entries) {
+    const StitchSurface& s = entry.surface;
+    if (key.second != 0 || s.back.is_none()) {
+      continue;
+    }
+    double sum = 0, count = 0;
+    for (const std::int32_t sample : s.node_sample) {
+      if (sample >= 0) {
+        sum += static_cast<double>(s.back.at(s.points[static_cast<std::size_t>(sample)]).squaredNorm());
+        ++count;
+      }
+    }
+    out[key.first] = std::sqrt(sum / std::max(count, 1.0));
   }
   return out;
 }

@@ -64,6 +64,10 @@ void weigh_places(Entries& entries);
 /// The scans of which no pass has a triangle; by id.
 [[nodiscard]] std::vector<int> without_surface(const Entries& entries);
 
+/// The scans of which a motion is known that takes them to where the others have them, and how far it does:
+/// RMS over the surface, mm; by id.
+[[nodiscard]] std::map<int, double> moved_mm(const Entries& entries);
+
 /// The samples that it wants and that have not been averaged yet, node by node.
 [[nodiscard]] std::vector<std::uint32_t> unfused(const Entry& entry);
 

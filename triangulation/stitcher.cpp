@@ -345,6 +345,11 @@ std::vector<Stitcher::Overlap> Stitcher::overlaps() const {
   return out;
 }
 
+std::map<int, double> Stitcher::moved_mm() const {
+  impl_->settle(JobContext{});
+  return dubsar::moved_mm(impl_->entries);
+}
+
 Status Stitcher::update(const JobContext& job) {
   if (!impl_->settle(job)) {
     return cancelled();

@@ -2,6 +2,7 @@
 // Copyright The Dubsar developers
 #pragma once
 
+#include <map>
 #include <memory>
 #include <span>
 #include <vector>
@@ -78,6 +79,9 @@ class Stitcher {
   };
   /// Of the scans that take part.
   [[nodiscard]] std::vector<Overlap> overlaps() const;
+  /// Those that do not lie where their poses put them but where the others have them, and how far that is:
+  /// RMS over the scan's surface, mm; by id.
+  [[nodiscard]] std::map<int, double> moved_mm() const;
   /// The mesh of all scans, with normals, reliability, scans and flags; kCancelled is its only error, and the
   /// scans are held as before.
   [[nodiscard]] Result<Mesh> mesh(const JobContext& job) const;

@@ -8,6 +8,7 @@
 #include "core/log.h"
 #include "core/utf8.h"
 #include "station/stitch_warnings.h"
+#include "station/tablet_flags.h"
 
 namespace dubsar {
 
@@ -25,6 +26,8 @@ const char* state_of(LeftOutScan::Why why) {
       return "no_pose";
     case LeftOutScan::Why::kNoSurface:
       return "no_surface";
+    case LeftOutScan::Why::kInTheWay:
+      return "in_the_way";
     case LeftOutScan::Why::kCopy:
       break;
   }
@@ -41,6 +44,7 @@ const char* word_of(LeftOutScan::Why why) {
       return state_of(why);
     case LeftOutScan::Why::kNoPose:
     case LeftOutScan::Why::kNoSurface:
+    case LeftOutScan::Why::kInTheWay:
     case LeftOutScan::Why::kCopy:
       break;
   }
@@ -71,6 +75,10 @@ LeftOutScan left_out(const ScanPose& pose) {
   return {pose.id, pose.file,
           pose.status == PoseStatus::kUnsure ? LeftOutScan::Why::kUnsure : LeftOutScan::Why::kFailed,
           pose.reason};
+}
+
+LeftOutScan left_out(const ForeignFound& found, const std::string& file) {
+  return {found.id, file, LeftOutScan::Why::kInTheWay, reason_of_all(found), true};
 }
 
 Result<std::vector<LeftOutScan>> unread_scans(const ScanSet& set) {

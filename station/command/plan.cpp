@@ -259,7 +259,7 @@ Result<int> plan(const PlanArguments& arguments, CommandContext& context) {
   if (!poses) {
     return std::unexpected(poses.error());
   }
-  const Result<std::vector<LeftOutScan>> left_out = leave_out(*set, *poses);
+  Result<std::vector<LeftOutScan>> left_out = leave_out(*set, *poses);
   if (!left_out) {
     return std::unexpected(left_out.error());
   }
@@ -268,7 +268,13 @@ Result<int> plan(const PlanArguments& arguments, CommandContext& context) {
     return std::unexpected(planned.error());
   }
   for (const ForeignFound& found : planned->stage->foreign()) {
-    log_warning(sentence_of(found));
+    if (found.is_all()) {
+      const auto scan = std::ranges::find(set->scans, found.id, &StationScan::id);
+      left_out->push_back(dubsar::left_out(found, scan->file));
+      warn_of(left_out->back());
+    } else {
+      log_warning(sentence_of(found));
+    }
   }
   Results& results = planned->results;
   log_scan_warnings(results.checklist.warnings);

@@ -41,14 +41,13 @@ namespace dubsar {
 namespace {
 
 /// Which samples are foreign only all scans together tell: those that show some are read once more.
-Status leave_out_foreign(const ScanSetArguments& arguments, const Taken& taken, ForeignMatter& matter,
+Status leave_out_foreign(const ScanSetArguments& arguments, ForeignMatter& matter, Taken& taken,
                          Stitcher& stitcher, CommandContext& context) {
-  const std::vector<ForeignFound> foreign = matter.find(taken.poses);
+  std::vector<ForeignFound> foreign = matter.find(taken.poses);
+  tell_foreign(foreign, taken, stitcher);
+  std::erase_if(foreign, [](const ForeignFound& found) { return found.is_all(); });
   if (foreign.empty()) {
     return {};
-  }
-  for (const ForeignFound& found : foreign) {
-    log_warning(sentence_of(found));
   }
   ScanSetOptions reading = arguments.reading();
   reading.again = true;
@@ -170,7 +169,7 @@ Result<Taken> take_scan_by_scan(const ScanSetArguments& arguments, Stitcher& sti
     return std::unexpected(told.error());
   }
   const Status left_out =
-      taken.lacks_poses ? Status() : leave_out_foreign(arguments, taken, matter, stitcher, context);
+      taken.lacks_poses ? Status() : leave_out_foreign(arguments, matter, taken, stitcher, context);
   return left_out ? Result<Taken>(std::move(taken)) : std::unexpected(left_out.error());
 }
 
@@ -202,9 +201,7 @@ Result<Taken> take_registered(const ScanSetArguments& arguments, Stitcher& stitc
   if (!foreign) {
     return std::unexpected(foreign.error());
   }
-  for (const ForeignFound& found : *foreign) {
-    log_warning(sentence_of(found));
-  }
+  tell_foreign(*foreign, taken, stitcher);
   return taken;
 }
 
@@ -259,6 +256,7 @@ Result<int> stitch_all(const ScanSetArguments& arguments, const StitchStamp& sta
   leave_out_copies(*stitcher, *taken);
   leave_out_without_surface(*stitcher, *taken);
   std::ranges::for_each(warnings_of_places(*stitcher, taken->names), log_warning);
+  const nlohmann::ordered_json apart = apart_json(*stitcher);
   const Result<Mesh> mesh = stitcher->take_mesh(context.job);
   if (!mesh) {
     return std::unexpected(mesh.error());
@@ -283,14 +281,17 @@ Result<int> stitch_all(const ScanSetArguments& arguments, const StitchStamp& sta
           mesh_losses(*mesh, arguments.out, "stitch into a .ply to have them")) {
     log_warning(lost->line());
   }
-  // A grid that was lost meanwhile is one that the stamp says was read.
-  const bool holds = stamp.work && unreadable_of(taken->left_out) == unreadable_of(stamp.left_out);
+  // A grid that was lost meanwhile is one that the stamp says was read; of one in the way it knows nothing.
+  const bool holds = stamp.work && unreadable_of(taken->left_out) == unreadable_of(stamp.left_out) &&
+                     std::ranges::count(taken->left_out, LeftOutScan::Why::kInTheWay, &LeftOutScan::why) == 0;
   if (const Status kept = holds ? stamp.work->finish({arguments.out}, context.job) : Status(); !kept) {
     return std::unexpected(kept.error());
   }
   if (context.json) {
-    nlohmann::ordered_json json{
-        {"mesh", arguments.out}, {"scans", taken->scans}, {"left_out", left_out_json(taken->left_out)}};
+    nlohmann::ordered_json json{{"mesh", arguments.out},
+                                {"scans", taken->scans},
+                                {"left_out", left_out_json(taken->left_out)},
+                                {"apart", apart}};
     json.update(mesh_report_json(check_mesh(*mesh, context.job)));
     if (context.job.cancelled()) {
       return fail(ErrorKind::kCancelled, "its mesh is written, but the check of it was stopped",

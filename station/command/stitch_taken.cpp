@@ -6,8 +6,10 @@
 #include <system_error>
 #include <utility>
 
+#include "core/log.h"
 #include "station/offline.h"
 #include "station/stitch_warnings.h"
+#include "station/tablet_flags.h"
 
 namespace dubsar {
 
@@ -35,6 +37,19 @@ Status leave_out_unread(const ScanSet& set, const std::filesystem::path& path,
     taken.leave_out(std::move(one));
   }
   return {};
+}
+
+void tell_foreign(const std::vector<ForeignFound>& foreign, Taken& taken, Stitcher& stitcher) {
+  for (const ForeignFound& found : foreign) {
+    if (!found.is_all()) {
+      log_warning(sentence_of(found));
+      continue;
+    }
+    taken.leave_out(left_out(found, taken.names.at(found.id)));
+    stitcher.remove(found.id);
+    taken.names.erase(found.id);
+    --taken.scans;
+  }
 }
 
 void leave_out_copies(const Stitcher& stitcher, Taken& taken) {

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "core/scan_pose.h"
+#include "registration/foreign_matter.h"
 #include "station/command/left_out_scans.h"
 #include "station/scan_set.h"
 #include "triangulation/stitcher.h"
@@ -34,6 +35,8 @@ struct Taken {
 /// mesh is not known of a file that they do not name: it may be the one that is lacking of theirs.
 [[nodiscard]] Status leave_out_unread(const ScanSet& set, const std::filesystem::path& path,
                                       const std::vector<ScanPose>* file, Taken& taken);
+/// Says in which scans something foreign was found. Of one that has nothing else nothing is stitched.
+void tell_foreign(const std::vector<ForeignFound>& foreign, Taken& taken, Stitcher& stitcher);
 /// Those that only repeat another's samples.
 void leave_out_copies(const Stitcher& stitcher, Taken& taken);
 /// Those without a triangle: their poses need not be wrong.

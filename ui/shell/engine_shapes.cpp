@@ -36,6 +36,10 @@ constexpr EnginePhrase kShapes[] = {
     {"vertex index ", "Punkt "},
     {" is not one of the ", " ist keiner der "},
     {" vertices so far", " Punkte bis hierher"},
+    {"it is seen from all sides, while a range grid shows one: cut it into views of at most 120 degrees, a "
+     "file each",
+     "er ist von allen Seiten gesehen, ein Scan zeigt aber nur eine: in Ansichten von höchstens 120 Grad "
+     "teilen, eine Datei für jede"},
     {"a PLY file without vertices", "eine PLY-Datei ohne Punkte"},
     {"a PLY file without faces", "eine PLY-Datei ohne Flächen"},
     // meshes
