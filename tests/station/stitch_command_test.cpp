@@ -102,6 +102,37 @@ TEST_F(StitchCommand, NamesAScanThatLiesByItself) {
   EXPECT_THAT(outcome.err, HasSubstr(test::scan_name(1) + " overlaps no other scan"));
 }
 
+/// Many pairs that lie apart, and many files with one fault, are a line each.
+TEST_F(StitchCommand, SaysInOneLineWhichOfManyScansIsAtFault) {
+  constexpr int kScans = 6;
+  poses_.clear();
+  for (int k = 0; k < kScans; ++k) {
+    RangeGrid grid = test::bumpy_scan(k);
+    grid.spacing_mm = 1.5;
+    ASSERT_TRUE(write_grid_ply(fs::path(at("scans")) / test::scan_name(k), grid));
+    ScanPose& pose = poses_.emplace_back();
+    pose.id = k;
+    pose.file = test::scan_name(k);
+    pose.status = PoseStatus::kRegistered;
+    pose.model_from_scanner = test::bumpy_pose(k);
+  }
+  poses_[4].model_from_scanner.translation_mm.z() += 0.5;
+  ASSERT_TRUE(write_poses(at("poses.json"), poses_));
+  const Outcome outcome =
+      run_command({"stitch", at("scans"), "--poses", at("poses.json"), "-o", at("mesh.ply"), "--json"});
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_THAT(outcome.complaints(), SizeIs(3)) << outcome.err;
+  EXPECT_THAT(outcome.err, HasSubstr(test::scan_name(0) + ": its header says a spacing of 1.5 mm"));
+  EXPECT_THAT(outcome.err, HasSubstr("what is said of scan_0.ply is so of 5 others: scan_1.ply, scan_2.ply, "
+                                     "scan_3.ply and 2 more"));
+  EXPECT_THAT(outcome.err, HasSubstr("5 of 15 pairs of scans lie apart where they overlap, by up to 0."));
+  EXPECT_THAT(outcome.err, HasSubstr("at fault seem: scan_4.ply (apart from 5 others, 0."));
+  const nlohmann::json apart = outcome.json()["apart"];
+  ASSERT_THAT(apart, SizeIs(5));
+  EXPECT_EQ(apart[0]["ids"], nlohmann::json::array({0, 4}));
+  EXPECT_NEAR(apart[0]["mm"].get<double>(), 0.5, 0.05);
+}
+
 TEST_F(StitchCommand, AScanOfOneRowIsNotCalledMisplaced) {
   RangeGrid row;
   row.allocate(1, 40);

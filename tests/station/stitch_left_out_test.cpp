@@ -98,6 +98,26 @@ TEST_F(StitchLeftOut, NamesAScanWithoutAPoseAndACopy) {
   EXPECT_THAT(left_out[1]["reason"], HasSubstr("the very samples of " + test::scan_name(0)));
 }
 
+/// Its pose puts a scan well before what the others see.
+TEST_F(StitchLeftOut, FallsShortWithoutAScanThatStandsInTheWayWithAllThatItHas) {
+  poses_[0].model_from_scanner.translation_mm.z() += 10;
+  ASSERT_TRUE(write_poses(at("poses.json"), poses_));
+  const std::string told =
+      "all of it stands in the way of scans 1 and 2: its pose is wrong, or something lay";
+  const Outcome outcome = with_poses();
+  EXPECT_EQ(outcome.status, 1) << outcome.err;
+  EXPECT_THAT(outcome.complaints(), SizeIs(2)) << outcome.err;
+  EXPECT_THAT(outcome.err, HasSubstr(test::scan_name(0) + " is left out: " + told));
+  const nlohmann::json said = outcome.json();
+  EXPECT_EQ(said["scans"], 2);
+  ASSERT_THAT(said["left_out"], SizeIs(2));
+  EXPECT_EQ(said["left_out"][1]["id"], 0);
+  EXPECT_EQ(said["left_out"][1]["state"], "in_the_way");
+  const Outcome planned = run_command({"plan", at("scans"), "--poses", at("poses.json"), "--json"});
+  EXPECT_THAT(planned.err, AllOf(HasSubstr(told), Not(HasSubstr("something was in the way"))));
+  EXPECT_EQ(planned.json()["left_out"][1]["state"], "in_the_way");
+}
+
 TEST_F(StitchLeftOut, FallsShortWithoutAScanOfASession) {
   const fs::path grid = fs::path(at("session")) / "grids/001.grid";
   fs::rename(grid, at("aside"));

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <utility>
 
 #include "core/order_statistics.h"
@@ -92,9 +93,14 @@ TEST(PosesThatAreOff, OneIsToldByItsPairsAndNoOthers) {
     told += overlap.is_off() ? 1 : 0;
   }
   EXPECT_GE(told, 2U);
-  for (const Stitcher::Overlap& overlap : holding(ball_with_one_off({0, 0, 0})).overlaps()) {
+  const std::map<int, double> moved_mm = holding(ball_with_one_off(kOff)).moved_mm();
+  ASSERT_EQ(moved_mm.size(), 1U);
+  EXPECT_NEAR(moved_mm.at(2), kOff.norm(), 0.03);
+  const Stitcher true_ones = holding(ball_with_one_off({0, 0, 0}));
+  for (const Stitcher::Overlap& overlap : true_ones.overlaps()) {
     EXPECT_EQ(overlap.step_mm, 0.0);
   }
+  EXPECT_THAT(true_ones.moved_mm(), IsEmpty());
 }
 
 TEST(PosesThatAreOff, OneSaysSoInSigmaAndReliabilityThoughNobodyToldIt) {
