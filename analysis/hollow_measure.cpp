@@ -10,7 +10,6 @@
 
 #include "analysis/inner_edges.h"
 #include "analysis/mesh_reach.h"
-#include "analysis/roundness.h"
 #include "analysis/wedge_numbering.h"
 #include "core/parallel.h"
 
@@ -168,7 +167,6 @@ std::expected<WedgeCandidate, std::string> HollowMeasure::measure(
   const HeightSurface& surface = fields_.surface_at(vertices.front());
   WedgeCandidate found = measure_wedge(patch, *faces, edges, surface, areas_, options_.exits);
   found.floor_mm = patch.depth_mm;
-  found.roundness = roundness_of(patch, *faces);
   note_ends_in_air(surface, patch.spacing_mm, &found);
   if (!fields_.body_of.empty()) {
     found.wedge.place.body = 1 + fields_.body_of[vertices.front()];

@@ -79,15 +79,17 @@ double turn_rad(const WedgePatch& patch, const WedgeFaces& faces, std::size_t k)
 
 }  // namespace
 
-double roundness_of(const WedgePatch& patch, const WedgeFaces& faces) {
+Roundness roundness_of(const WedgePatch& patch, const WedgeFaces& faces) {
+  Roundness out;
   double between = 0;
-  std::array<double, 3> turn{};
   for (std::size_t k = 0; k < 3; ++k) {
     between += angle_between(faces.plane[k].normal, faces.plane[(k + 1) % 3].normal) / 3.0;
-    turn[k] = turn_rad(patch, faces, k);
+    out.turn_rad[k] = turn_rad(patch, faces, k);
   }
+  std::array<double, 3> turn = out.turn_rad;
   std::ranges::sort(turn);
-  return turn[1] / std::max(between, 1e-3);
+  out.share = turn[1] / std::max(between, 1e-3);
+  return out;
 }
 
 }  // namespace dubsar

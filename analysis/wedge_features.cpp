@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "core/units.h"
 
@@ -17,6 +18,8 @@ constexpr double kAngleScaleDeg = 8;
 /// A wedge whose directional edge leads by no more than this is a Winkelhaken.
 constexpr double kStubby = 0.3;
 constexpr double kKindDeg = 25;
+/// An edge that is flatter goes on as if it rose by this (sine).
+constexpr double kLeastRise = 0.03;
 
 double on_scale(std::size_t feature, double value) {
   return feature < kLengths ? std::log(std::max(value, 1e-3)) / kLogScale : value / kAngleScaleDeg;
@@ -30,8 +33,11 @@ WedgeProfile profile_of(std::optional<Face> side, const std::vector<const Wedge*
   for (const Wedge* wedge : wedges) {
     const WedgeFeatures features = wedge_features(*wedge);
     for (std::size_t f = 0; f < features.size(); ++f) {
-      values[f].push_back(features[f]);
+      if (!std::isnan(features[f])) {
+        values[f].push_back(features[f]);
+      }
     }
+    profile.beyond_mesh += static_cast<int>(std::ranges::count(wedge->beyond_mesh, true));
     profile.kinds[kind_of(*wedge)] += 1.0 / static_cast<double>(wedges.size());
   }
   for (std::size_t f = 0; f < values.size(); ++f) {
@@ -56,7 +62,8 @@ WedgeFeatures wedge_features(const Wedge& wedge) {
   f[0] = wedge.depth_mm;
   for (std::size_t k = 0; k < 3; ++k) {
     const std::size_t edge = (d + k) % 3;
-    f[1 + k] = (wedge.exit_points_mm[edge] - wedge.depth_point_mm).norm();
+    f[1 + k] = wedge.beyond_mesh[edge] ? std::numeric_limits<double>::quiet_NaN()
+                                       : (wedge.exit_points_mm[edge] - wedge.depth_point_mm).norm();
     f[5 + k] = deg_from_rad(wedge.opening_angles_rad[edge]);
     f[8 + k] = deg_from_rad(wedge.face_angles_rad[edge]);
   }
@@ -64,7 +71,14 @@ WedgeFeatures wedge_features(const Wedge& wedge) {
   return f;
 }
 
-std::vector<float> comparable(const WedgeFeatures& features) {
+std::vector<float> comparable(const Wedge& wedge) {
+  WedgeFeatures features = wedge_features(wedge);
+  for (std::size_t k = 0; k < 3; ++k) {
+    if (std::isnan(features[1 + k])) {
+      const std::size_t edge = (static_cast<std::size_t>(wedge.directional_edge) + k) % 3;
+      features[1 + k] = wedge.depth_mm / std::max(std::sin(wedge.edge_slopes_rad[edge]), kLeastRise);
+    }
+  }
   std::vector<float> out;
   for (std::size_t f = 0; f < features.size(); ++f) {
     out.push_back(static_cast<float>(on_scale(f, features[f])));

@@ -12,17 +12,20 @@ namespace dubsar {
 
 using WedgeFeatures = std::array<double, kWedgeFeatures.size()>;
 
-/// The features by the names and units of kWedgeFeatures.
+/// The features by the names and units of kWedgeFeatures. No number for the length of an edge that the mesh
+/// ends before.
 [[nodiscard]] WedgeFeatures wedge_features(const Wedge& wedge);
 
 /// The same on scales on which a step of one is about what one hand's wedges scatter by (lengths by their
 /// logarithm): for distances between wedges.
-[[nodiscard]] std::vector<float> comparable(const WedgeFeatures& features);
+/// An edge that the mesh ends before is as long as its depth and slope say, which clay that is there gives.
+[[nodiscard]] std::vector<float> comparable(const Wedge& wedge);
 
 /// Index into kWedgeKinds.
 [[nodiscard]] std::size_t kind_of(const Wedge& wedge);
 
-/// Of the whole tablet, then of each side that has wedges.
+/// Of the whole tablet, then of each side that has wedges. Quantiles are of the numbers that are known: 0
+/// where there are none.
 [[nodiscard]] std::vector<WedgeProfile> make_profiles(const std::vector<Wedge>& wedges);
 
 /// Quantiles of all features on their comparable scales: the L1 distance of two is the mean distance that the

@@ -19,8 +19,10 @@ constexpr double kParallel = 0.966;  // cosine of 15 degrees
 /// Vertices looked at per pair.
 constexpr std::size_t kSamples = 200;
 
+/// Of a shaft, whose depth may be that of the whole tablet, the nearest surface: what lies near its planes is
+/// not all its own.
 double tolerance_mm(const WedgeCandidate& c) {
-  return std::max({0.03, 2.5 * c.rms_mm, 0.08 * c.wedge.depth_mm});
+  return std::max({0.03, 2.5 * c.rms_mm, 0.08 * c.nearest_mm});
 }
 
 double reach_mm(const WedgeCandidate& c) {
@@ -84,7 +86,7 @@ bool continues(const WedgeCandidate& piece, const WedgeCandidate& whole) {
   const Eigen::Vector3d off = to - along / length * tail;
   const double up = off.dot(w.surface_normal);
   const double aside = (off - up * w.surface_normal).norm();
-  return aside < 0.3 * w.depth_mm && up > -0.3 * w.depth_mm;
+  return aside < 0.3 * whole.nearest_mm && up > -0.3 * whole.nearest_mm;
 }
 
 }  // namespace

@@ -118,7 +118,7 @@ void note_company(const std::vector<WedgeCandidate>& candidates, const std::vect
              it != order.end() && x_of(*it) <= at.x() + reach; ++it) {
           const WedgeCandidate& other = candidates[*it];
           // A round one is no broken clay either: somebody's finger or a sign for a number.
-          if (&other == &c || other.roundness > most_round ||
+          if (&other == &c || other.wedge.roundness > most_round ||
               (other.wedge.depth_point_mm - at).squaredNorm() > reach * reach) {
             continue;
           }
@@ -140,7 +140,7 @@ std::string out_of_bounds(const JudgeOptions& options, const WedgeCandidate& c) 
   if (w.vertex_count < options.least_vertices) {
     return "too few vertices lie on its faces";
   }
-  if (c.roundness > options.most_round) {
+  if (w.roundness > options.most_round) {
     return "it is round: a bowl or a cone, not three faces";
   }
   if (w.depth_mm > options.most_floors * c.floor_mm) {

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "analysis/roundness.h"
 #include "analysis/wedge_sigmas.h"
 #include "core/units.h"
 
@@ -24,6 +25,35 @@ constexpr double kNoneMm = 1e3;
 
 double angle_between(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
   return std::atan2(a.cross(b).norm(), a.dot(b));
+}
+
+/// The nearest surface is that above the wedge while it looks less far from the wedge's own up than this
+/// (cosine): the floor of a deep hole may be nearer to another side of the tablet.
+constexpr double kSameSide = 0.5;
+
+/// How far p lies below the surface that looks along `up`: the nearest of that side, or else as far as it is
+/// along `up`; 0 where there is none.
+double depth_below(const HeightSurface& surface, const Eigen::Vector3d& p, const Eigen::Vector3d& up) {
+  const double nearest_mm = -static_cast<double>(surface.height_mm(p.cast<float>()));
+  const Eigen::Vector3f looks = surface.normal(p.cast<float>());
+  if (looks.cast<double>().dot(up) > kSameSide) {
+    return nearest_mm;
+  }
+  constexpr int kMostCrossings = 3;  // into the clay and out of it, where p has come out beyond the tablet
+  constexpr float kReachMm = 100;
+  constexpr float kOnMm = 1e-3F;
+  Eigen::Vector3f from = p.cast<float>();
+  for (int i = 0; i < kMostCrossings; ++i) {
+    const auto at = surface.crossing(from, up.cast<float>(), kReachMm);
+    if (!at) {
+      break;
+    }
+    if (surface.normal(*at).cast<double>().dot(up) > 0) {
+      return up.dot(at->cast<double>() - p);
+    }
+    from = *at + kOnMm * up.cast<float>();
+  }
+  return std::max(nearest_mm, 0.0);
 }
 
 /// Longest or flattest, and by how much (facts.md): both rest on the edges' slopes where exits are hidden.
@@ -52,6 +82,37 @@ void choose_directional(Wedge* wedge) {
                                               : DirectionalBy::kFlattest;
 }
 
+/// A rim of the tablet shows within so many cells of the free surface, which is smooth over a few of them.
+constexpr double kRimCells = 2.0;
+
+/// How far the free surface leans over at the foot of p because a rim is near, radians: by how much it has
+/// turned there from where it bends less, on the one side of the foot, as far as it bends more on the other.
+/// None on a plane, a ball or a roll, which bend alike.
+double rim_rad(const HeightSurface& surface, const Eigen::Vector3d& p) {
+  const auto foot = surface.closest(p.cast<float>());
+  const Eigen::Vector3f up = foot ? surface.normal(*foot) : Eigen::Vector3f::Zero();
+  if (up.isZero()) {
+    return 0;
+  }
+  const float reach = static_cast<float>(kRimCells) * surface.cell_mm();
+  const Eigen::Vector3f across = up.unitOrthogonal();
+  const Eigen::Vector3f along = up.cross(across);
+  constexpr int kWays = 4;
+  double most = 0;
+  for (int i = 0; i < kWays; ++i) {
+    const auto turn = static_cast<float>(kPi) * static_cast<float>(i) / kWays;
+    const Eigen::Vector3f way = std::cos(turn) * across + std::sin(turn) * along;
+    const double ahead = surface.normal(*foot + reach * way).dot(way);
+    const double behind = -surface.normal(*foot - reach * way).dot(way);
+    const double less = std::min(ahead, behind);
+    const double more = std::max(ahead, behind);
+    if (less > 0) {
+      most = std::max(most, std::asin(std::min(less, 1.0)) * (more - less) / (more + less));
+    }
+  }
+  return most;
+}
+
 /// Whether the foot of p lies in the triangle of the three exits, seen along z (patch frame).
 bool in_outline(const std::array<Eigen::Vector2d, 3>& corner, const Eigen::Vector2d& p) {
   for (std::size_t k = 0; k < 3; ++k) {
@@ -74,7 +135,8 @@ WedgeCandidate measure_wedge(const WedgePatch& patch, const WedgeFaces& faces, c
   const Eigen::Vector3d depth_point = patch.to_model(edges.depth_point);
   wedge.depth_point_mm = depth_point;
   wedge.surface_normal = patch.model_from_patch.col(2);
-  wedge.depth_mm = -static_cast<double>(surface.height_mm(depth_point.cast<float>()));
+  wedge.depth_mm = depth_below(surface, depth_point, wedge.surface_normal);
+  out.nearest_mm = -static_cast<double>(surface.height_mm(depth_point.cast<float>()));
   const double depth = std::max(wedge.depth_mm, 0.01);
 
   std::array<Eigen::Vector2d, 3> corner;
@@ -154,7 +216,10 @@ WedgeCandidate measure_wedge(const WedgePatch& patch, const WedgeFaces& faces, c
   wedge.reliability = std::clamp(weight / count, 0.0, 1.0);
   wedge.faces_intact = out.coverage;
   wedge.intact = (out.coverage[0] + out.coverage[1] + out.coverage[2]) / 3.0;
-  note_sigmas(faces, edges, {out.coverage, gap_mm}, patch.spacing_mm, exits, &wedge);
+  const Roundness round = roundness_of(patch, faces);
+  wedge.roundness = round.share;
+  note_sigmas(faces, edges, {out.coverage, gap_mm, round.turn_rad, rim_rad(surface, depth_point)},
+              patch.spacing_mm, exits, &wedge);
   return out;
 }
 

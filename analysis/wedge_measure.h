@@ -30,7 +30,7 @@ struct WedgeCandidate {
   double hollow_mm2 = 0;                ///< of the whole hollow that it was found in
   double level_rim = 0;                 ///< share of that hollow's rim that lies at the free surface
   double floor_mm = 0;                  ///< depth of the lowest clay of that hollow
-  double roundness = 0;                 ///< see roundness_of()
+  double nearest_mm = 0;                ///< of its depth point below the surface of whatever side is nearest
   std::string rejected;                 ///< why it is none; empty while it may be one
 };
 

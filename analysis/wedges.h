@@ -21,8 +21,10 @@ namespace dubsar {
 /// Raised whenever the same mesh gives other wedges, or other words of them: what was kept by another method
 /// is measured anew. 2: edges are counted from the directional one; sigmas of slopes, and on coarse meshes
 /// larger. 3: faces are fitted away from creases and rims. 4: bowls and cones are none, sigmas
-/// follow what is missing of a wedge, each body of a mesh is measured alone.
-inline constexpr int kWedgeMethod = 4;
+/// follow what is missing of a wedge, each body of a mesh is measured alone. 5: depths are below the side
+/// that a wedge is impressed in, sigmas follow how round its faces are and how far the surface turns above
+/// it.
+inline constexpr int kWedgeMethod = 5;
 
 struct WedgeOptions {
   ExitDefinition exits = ExitDefinition::kSurface;

@@ -35,8 +35,9 @@ std::string wedge_in_words(const Wedge& w) {
       w.place.side ? fmt::format(" at {:.0f} degrees as the side is read", deg_from_rad(w.place.turn_rad))
                    : std::string();
   return fmt::format(
-      "Wedge {}{}: {:.2f} mm deep, directional edge {:.2f} mm long{}, confidence {:.2f}{}", w.id, where,
-      w.depth_mm, w.edge_lengths_mm[directional], turn, w.confidence,
+      "Wedge {}{}: {:.2f} mm deep, directional edge {:.2f} mm long{}{}, confidence {:.2f}{}", w.id, where,
+      w.depth_mm, w.edge_lengths_mm[directional],
+      w.beyond_mesh[directional] ? " (the mesh ends before it: not measured)" : "", turn, w.confidence,
       w.by_hand == ByHand::kNo
           ? std::string()
           : fmt::format("; corrected by hand: {}", kByHandNames[static_cast<std::size_t>(w.by_hand)]));

@@ -42,19 +42,25 @@ std::string name_of(ByHand by_hand) {
 std::string metadata(const Wedge& w) {
   const auto directional = static_cast<std::size_t>(w.directional_edge);
   return fmt::sprintf(
-      R"({"id":%d,"line":%d,"order":%d,"confidence":%.3f,"depth_mm":%.3f,"length_mm":%.3f,"turn_deg":%.1f,"volume_mm3":%.4f%s})",
+      R"({"id":%d,"line":%d,"order":%d,"confidence":%.3f,"depth_mm":%.3f,"length_mm":%.3f,"turn_deg":%.1f,"volume_mm3":%.4f%s%s})",
       w.id, w.place.line, w.place.order, w.confidence, w.depth_mm, w.edge_lengths_mm[directional],
       deg_from_rad(w.place.turn_rad), w.volume_mm3,
+      w.beyond_mesh[directional] ? R"(,"length_beyond_mesh":true)" : "",
       w.by_hand == ByHand::kNo ? std::string() : fmt::sprintf(R"(,"by_hand":"%s")", name_of(w.by_hand)));
+}
+
+/// Where the mesh ends before the edge does the length is a guess, and said to be one.
+std::string length_mm(const Wedge& w, std::size_t k) {
+  return fmt::sprintf("%.2f%s", w.edge_lengths_mm[k], w.beyond_mesh[k] ? " (the mesh ends before it)" : "");
 }
 
 std::string numbers(const Wedge& w) {
   const auto deg = [](double rad) { return deg_from_rad(rad); };
   return fmt::sprintf(
-      "wedge %d, line %d, %d: depth %.2f mm, edges %.2f %.2f %.2f mm, face angles %.0f %.0f %.0f, opening "
+      "wedge %d, line %d, %d: depth %.2f mm, edges %s %s %s mm, face angles %.0f %.0f %.0f, opening "
       "angles %.0f %.0f %.0f degrees, confidence %.2f%s",
-      w.id, w.place.line, w.place.order, w.depth_mm, w.edge_lengths_mm[0], w.edge_lengths_mm[1],
-      w.edge_lengths_mm[2], deg(w.face_angles_rad[0]), deg(w.face_angles_rad[1]), deg(w.face_angles_rad[2]),
+      w.id, w.place.line, w.place.order, w.depth_mm, length_mm(w, 0), length_mm(w, 1), length_mm(w, 2),
+      deg(w.face_angles_rad[0]), deg(w.face_angles_rad[1]), deg(w.face_angles_rad[2]),
       deg(w.opening_angles_rad[0]), deg(w.opening_angles_rad[1]), deg(w.opening_angles_rad[2]), w.confidence,
       w.by_hand == ByHand::kNo ? std::string() : "; corrected by hand: " + name_of(w.by_hand));
 }

@@ -151,6 +151,7 @@ std::vector<Column> columns(const FileLabel& label) {
     text(fmt::format("beyond_mesh_{}", k),
          [k](const Wedge& w) { return std::string(w.beyond_mesh[k] ? "yes" : "no"); });
   }
+  plain("roundness", [](const Wedge& w) { return w.roundness; });
   text("vertex_count", [](const Wedge& w) { return std::to_string(w.vertex_count); });
   text("by_hand",
        [](const Wedge& w) { return std::string(kByHandNames[static_cast<std::size_t>(w.by_hand)]); });

@@ -102,6 +102,9 @@ struct Wedge {
   double intact = 1.0;                                   ///< share of the three faces that is there
   std::array<double, 3> faces_intact = {1.0, 1.0, 1.0};  ///< of each of them; NaN where nothing says it
   std::array<bool, 3> beyond_mesh{};  ///< of each inner edge: the mesh ends before it, its exit is in the air
+  /// How far its faces are from planes: 0 for planes, 0.6 to 0.85 for cones and bowls, more the more its
+  /// edges are worn (analysis/roundness.h); NaN where nothing says it.
+  double roundness = 0;
   ByHand by_hand = ByHand::kNo;
 };
 

@@ -37,6 +37,7 @@ inline constexpr std::array<std::string_view, 6> kWedgeKinds = {"horizontal", "v
 struct WedgeProfile {
   std::optional<Face> side;  ///< unset: the whole tablet
   int count = 0;
+  int beyond_mesh = 0;  ///< inner edges before whose end the mesh ends: their lengths are in no quantile
   std::array<std::array<double, kProfileQuantiles>, kWedgeFeatures.size()> quantiles{};
   std::array<double, kWedgeKinds.size()> kinds{};  ///< shares
 };

@@ -174,6 +174,7 @@ void derive_measures(Wedge* wedge) {
   }
   wedge->volume_mm3 = std::abs(edge[0].dot(edge[1].cross(edge[2]))) / 6.0;
   wedge->face_slopes_rad = wedge->edge_bows_mm = kThreeUnknown;
+  wedge->roundness = kUnknown;
   wedge->sigma = unknown_sigma();
 }
 
@@ -201,6 +202,9 @@ void measures_from(const JsonNode& node, double mm, Wedge* wedge) {
   }
   if (const auto volume = node.find("volume_mm3")) {
     wedge->volume_mm3 = volume->number(0);
+  }
+  if (const auto roundness = node.find("roundness")) {
+    wedge->roundness = roundness->number();
   }
   if (const auto sigma = node.find("sigma")) {
     wedge->sigma = sigma_from(*sigma, mm);
@@ -249,6 +253,9 @@ void add_measures(const Wedge& wedge, OrderedJson* json) {
   }
   if (are_known(wedge.faces_intact)) {
     (*json)["faces_intact"] = wedge.faces_intact;
+  }
+  if (is_known(wedge.roundness)) {
+    (*json)["roundness"] = wedge.roundness;
   }
   (*json)["directional_by"] = kDirectionalBy[static_cast<std::size_t>(wedge.directional_by)];
   (*json)["directional_margin"] = wedge.directional_margin;

@@ -22,6 +22,9 @@ OrderedJson profile_json(const WedgeProfile& profile) {
   OrderedJson json;
   json["of"] = profile.side ? to_string(*profile.side) : "tablet";
   json["count"] = profile.count;
+  if (profile.beyond_mesh > 0) {
+    json["beyond_mesh"] = profile.beyond_mesh;
+  }
   json["kinds"] = OrderedJson::object();
   for (std::size_t k = 0; k < kWedgeKinds.size(); ++k) {
     json["kinds"][std::string(kWedgeKinds[k])] = profile.kinds[k];
@@ -44,6 +47,9 @@ std::optional<WedgeProfile> profile_from(const JsonNode& node) {
     profile.side = static_cast<Face>(of - 1);
   }
   profile.count = static_cast<int>(node.at("count").integer(0, std::numeric_limits<int>::max()));
+  if (const auto beyond = node.find("beyond_mesh")) {
+    profile.beyond_mesh = static_cast<int>(beyond->integer(0, std::numeric_limits<int>::max()));
+  }
   const JsonNode kinds = node.at("kinds");
   const JsonNode deciles = node.at("deciles");
   for (std::size_t k = 0; k < kWedgeKinds.size(); ++k) {

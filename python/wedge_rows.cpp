@@ -53,6 +53,7 @@ struct WedgeRow {
   double intact;
   double faces_intact[3];
   bool beyond_mesh[3];
+  double roundness;
   char by_hand[8];
 };
 
@@ -115,6 +116,7 @@ WedgeRow row_of(const Wedge& wedge) {
   row.intact = wedge.intact;
   put(row.faces_intact, wedge.faces_intact);
   std::ranges::copy(wedge.beyond_mesh, row.beyond_mesh);
+  row.roundness = wedge.roundness;
   put(row.by_hand, kByHandNames[static_cast<std::size_t>(wedge.by_hand)]);
   return row;
 }
@@ -135,7 +137,7 @@ void bind_wedge_rows() {
                        volume_mm3, sigma_depth_point_mm, sigma_depth_mm, sigma_edge_rad, sigma_edge_slope_rad,
                        sigma_opening_rad, sigma_face_angle_rad, sigma_face_slope_rad, sigma_length_mm,
                        sigma_volume_mm3, side, line, order, turn_rad, reliability, confidence, vertex_count,
-                       intact, faces_intact, beyond_mesh, by_hand);
+                       intact, faces_intact, beyond_mesh, roundness, by_hand);
 }
 
 }  // namespace dubsar::python

@@ -9,6 +9,7 @@
 #include <cmath>
 
 #include "analysis/hollow_measure.h"
+#include "analysis/text_frame.h"
 #include "analysis/wedge_features.h"
 #include "core/log.h"
 #include "core/order_statistics.h"
@@ -86,6 +87,17 @@ void warn_of_bodies(const Analysis& analysis, const std::string& where) {
         "side is which is told of all together: give each a file of its own where they do not lie alike",
         where, bodies));
   }
+}
+
+std::optional<std::string> no_text(std::size_t wedges, double text_certainty) {
+  if (wedges == 0 || text_certainty >= kCertainText) {
+    return std::nullopt;
+  }
+  return fmt::format(
+      "no direction of writing shows in the {} that {} found: confidence was learnt on inscribed tablets, "
+      "and "
+      "hollows of rough clay may pass for wedges: look at them before you count them",
+      wedges == 1 ? "one wedge" : fmt::format("{} wedges", wedges), wedges == 1 ? "was" : "were");
 }
 
 void warn_of_lost(const Analysis& analysis, const std::string& where) {

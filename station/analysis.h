@@ -44,6 +44,9 @@ void correct_analysis(const Mesh& mesh, const AnalysisOptions& options, Analysis
 /// A line of the log where the mesh holds several bodies.
 void warn_of_bodies(const Analysis& analysis, const std::string& where);
 
+/// What there is to say where wedges were found and no text runs through them.
+[[nodiscard]] std::optional<std::string> no_text(std::size_t wedges, double text_certainty);
+
 /// A line of the log for each correction that could not be made.
 void warn_of_lost(const Analysis& analysis, const std::string& where);
 

@@ -82,10 +82,16 @@ bool is_of_another_kind(const fs::path& path) {
   return !wedges || (wedges->items().empty() && root.failed());
 }
 
-/// The file's own, unless wedges were put in or taken out since.
+/// The file's own, unless wedges were put in or taken out since, or its lengths are those of a version that
+/// counted what the mesh ends before.
 WedgeProfile profile_of(const WedgeFile& file) {
   const auto own = std::ranges::find_if(file.profiles, [](const WedgeProfile& p) { return !p.side; });
-  return own != file.profiles.end() && own->count == static_cast<int>(file.wedges.size())
+  int beyond = 0;
+  for (const Wedge& wedge : file.wedges) {
+    beyond += static_cast<int>(std::ranges::count(wedge.beyond_mesh, true));
+  }
+  return own != file.profiles.end() && own->count == static_cast<int>(file.wedges.size()) &&
+                 own->beyond_mesh == beyond
              ? *own
              : make_profiles(file.wedges).front();
 }
@@ -106,7 +112,7 @@ IndexedTablet read_tablet(const fs::path& path, const std::string& name, std::ch
   for (const Wedge& wedge : file->wedges) {
     tablet.ids.push_back(wedge.id);
     tablet.digests.push_back(wedge_digest(wedge));
-    const std::vector<float> row = comparable(wedge_features(wedge));
+    const std::vector<float> row = comparable(wedge);
     tablet.features.insert(tablet.features.end(), row.begin(), row.end());
   }
   if (file->wedges.size() >= kFewestWedges) {
@@ -241,7 +247,7 @@ bool Collection::plant(bool anew) {
 std::vector<SimilarWedge> Collection::similar_wedges(const Wedge& wedge, std::size_t count) const {
   const std::uint64_t itself = wedge_digest(wedge);
   std::vector<SimilarWedge> similar;
-  for (const FeatureMatch& match : wedges_->nearest(comparable(wedge_features(wedge)), count + kCopies)) {
+  for (const FeatureMatch& match : wedges_->nearest(comparable(wedge), count + kCopies)) {
     const Row& row = wedge_rows_[match.index];
     const IndexedTablet& tablet = index_.tablets[row.tablet];
     if (tablet.digests[row.wedge] != itself && similar.size() < count) {

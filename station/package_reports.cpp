@@ -45,9 +45,9 @@ Result<Pages> pages_of(const PackageContent& content) {
   PageFacts facts = content.facts;
   facts.title = content.identifier;
   if (content.wedges) {
-    facts.wedges =
-        wedge_sentence({"wedges/wedges.json", content.wedges->wedges.size(), content.wedges->rejected.size()},
-                       "wedges/wedges.json");
+    facts.wedges = wedge_sentence({"wedges/wedges.json", content.wedges->wedges.size(),
+                                   content.wedges->rejected.size(), content.wedges->text_certainty},
+                                  "wedges/wedges.json");
   }
   ReportInput input = content.source.input(facts);
   input.when = content.when;

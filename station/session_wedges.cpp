@@ -95,7 +95,7 @@ Result<std::optional<SessionWedges>> keep_wedges(SessionStore& store, const Mesh
   if (const Status made = make_folder(folder); !made) {
     return std::unexpected(made.error());
   }
-  SessionWedges out{folder / "wedges.json", file.wedges.size(), file.rejected.size()};
+  SessionWedges out{folder / "wedges.json", file.wedges.size(), file.rejected.size(), file.text_certainty};
   std::vector<WedgeDrawing> drawings;
   if (file.text_from_model) {
     drawings = wedge_drawings(folder, file.wedges, *file.text_from_model,
@@ -163,10 +163,15 @@ std::string wedge_sentence(const SessionWedges& wedges, const std::string& where
   if (wedges.count == 0) {
     return fmt::format("No wedges were found; {} hollows were looked at.", wedges.rejected);
   }
-  return fmt::format(
+  std::string sentence = fmt::format(
       "{} wedges were measured, {} hollows were rejected: {} has every angle, the drawings "
       "beside it every wedge. Wedge measurement was tested on simulated tablets only.",
       wedges.count, wedges.rejected, where);
+  if (std::optional<std::string> said = no_text(wedges.count, wedges.text_certainty)) {
+    said->front() = 'N';
+    sentence += fmt::format(" {}.", *said);
+  }
+  return sentence;
 }
 
 }  // namespace dubsar

@@ -21,6 +21,7 @@ struct SessionWedges {
   std::filesystem::path json;  ///< analysis/wedges.json; a drawing of each written side lies beside it
   std::size_t count = 0;
   std::size_t rejected = 0;
+  double text_certainty = 0;
 };
 
 /// What the scholar has said of the session's wedges in the viewer; a file that cannot be read is passed over

@@ -3,6 +3,7 @@
 #include "station/wedge_histogram.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "analysis/wedge_features.h"
 
@@ -13,7 +14,9 @@ WedgeHistogram histogram_of(const std::vector<Wedge>& wedges, std::size_t featur
   std::vector<double> values;
   values.reserve(wedges.size());
   for (const Wedge& wedge : wedges) {
-    values.push_back(wedge_features(wedge).at(feature));
+    if (const double value = wedge_features(wedge).at(feature); !std::isnan(value)) {
+      values.push_back(value);
+    }
   }
   if (values.empty() || bins == 0) {
     return out;

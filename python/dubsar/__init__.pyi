@@ -157,8 +157,8 @@ class Wedges:
         sigma_edge_slope_rad[3], sigma_opening_rad[3], sigma_face_angle_rad[3], sigma_face_slope_rad[3],
         sigma_length_mm[3], sigma_volume_mm3, side (bytes, b"obverse"; b"" where not known, line and order are 0
         then), line, order, turn_rad, reliability, confidence, vertex_count, intact,
-        faces_intact[3], beyond_mesh[3] (bool), by_hand (b"no", or what a person said: b"merged", b"split", b"added"). What each means: wedges.json's page,
-        docs/formats/wedges.md. Sigmas, face slopes, bows and faces_intact that a file does not say are NaN,
+        faces_intact[3], beyond_mesh[3] (bool), roundness, by_hand (b"no", or what a person said: b"merged", b"split", b"added"). What each means: wedges.json's page,
+        docs/formats/wedges.md. Sigmas, face slopes, bows, faces_intact and roundness that a file does not say are NaN,
         sigma_length_mm and sigma_volume_mm3 with exit='extent' too, and of an edge that is beyond_mesh. Edges and faces of a measured wedge are counted
         from the directional one on."""
     @property

@@ -257,6 +257,9 @@ Result<int> analyze(const AnalyzeArguments& arguments, CommandContext& context) 
   warn_of_bodies(*analysis, arguments.in);
   warn_of_others(arguments, *said, corrections_file);
   warn_of_lost(*analysis, corrections_file.string());
+  if (const auto unwritten = no_text(analysis->set.wedges.size(), analysis->text.certainty)) {
+    log_warning(arguments.in + ": " + *unwritten);
+  }
   if (const std::optional<Error> coarse = too_coarse(*analysis, arguments.in)) {
     log_warning(coarse->line());
   }

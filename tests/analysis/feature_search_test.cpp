@@ -143,5 +143,23 @@ TEST(WedgeProfile, CountsSidesAndKinds) {
   EXPECT_EQ(make_profiles({}).front().count, 0);
 }
 
+TEST(WedgeProfile, LeavesOutLengthsThatTheMeshEndsBefore) {
+  std::vector<Wedge> wedges = hand(1.2, 0.5, 9, 1);
+  const WedgeProfile whole = make_profiles(wedges).front();
+  wedges.push_back(wedges[0]);
+  wedges.back().beyond_mesh[0] = true;
+  wedges.back().exit_points_mm[0] *= 100;
+  wedges.back().edge_slopes_rad[0] = 0.3;
+  const WedgeProfile profile = make_profiles(wedges).front();
+  EXPECT_EQ(profile.count, 10);
+  EXPECT_EQ(profile.beyond_mesh, 1);
+  EXPECT_EQ(whole.beyond_mesh, 0);
+  EXPECT_EQ(profile.quantiles[1], whole.quantiles[1]) << "of the nine";
+  EXPECT_TRUE(std::isnan(wedge_features(wedges.back())[1]));
+  Wedge risen = wedges[0];
+  risen.exit_points_mm[0] = risen.depth_point_mm + Eigen::Vector3d(0.0, 0.0, risen.depth_mm / std::sin(0.3));
+  EXPECT_NEAR(comparable(wedges.back())[1], comparable(risen)[1], 1e-5) << "as long as its slope says";
+}
+
 }  // namespace
 }  // namespace dubsar

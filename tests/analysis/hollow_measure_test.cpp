@@ -11,6 +11,7 @@
 #include <memory>
 
 #include "tests/analysis/support/pits.h"
+#include "tests/analysis/support/shapes.h"
 
 namespace dubsar {
 namespace {
@@ -110,6 +111,39 @@ TEST(HollowMeasure, WhereTheMeshEndsBeforeAnEdgeDoesNobodyKnowsItsLength) {
   EXPECT_GT(wedge.sigma.length_mm[1], 0);
   EXPECT_GT(wedge.sigma.length_mm[2], 0);
   EXPECT_GT(whole.sigma.length_mm[0], 0);
+}
+
+/// A box 10 mm thick with a pit in its upper side whose three steep faces meet 9 mm below it, of which the
+/// first 3 mm are there: the nearest surface to that place is the lower side.
+TEST(HollowMeasure, DepthIsBelowTheSideThatAHoleIsIn) {
+  Hollow shaft;
+  shaft.mesh = shapes::box({8, 8, 5}, 160);
+  const auto hole = [](const Eigen::Vector3f& p) {
+    const float out = std::max({p.x(), -0.5F * p.x() + 0.866F * p.y(), -0.5F * p.x() - 0.866F * p.y()});
+    return std::min(0.0F, std::max(-3.0F, 9.0F * (out / 0.9F - 1.0F)));
+  };
+  for (Eigen::Vector3f& p : shaft.mesh.positions) {
+    p.z() += p.z() > 4.999F ? hole(p) : 0.0F;
+  }
+  shaft.mesh.normals = vertex_normals(shaft.mesh);
+  shaft.graph = make_vertex_graph(shaft.mesh);
+  shaft.fields = *compute_surface_fields(shaft.mesh, shaft.graph, {}, {});
+  shaft.areas = vertex_areas(shaft.mesh, shaft.graph);
+  for (std::uint32_t v = 0; v < shaft.mesh.positions.size(); ++v) {
+    const Eigen::Vector3f& p = shaft.mesh.positions[v];
+    if (p.z() < 4.95F && p.z() > 1.9F && p.head<2>().norm() < 2) {
+      shaft.vertices.push_back(v);
+    }
+  }
+  std::ranges::stable_sort(shaft.vertices, {}, [&](std::uint32_t v) { return shaft.fields.height_mm[v]; });
+  const HollowMeasure measure(shaft.mesh, shaft.graph, shaft.fields, {}, shaft.areas, 0);
+  std::vector<std::int32_t> slot(shaft.mesh.positions.size(), -1);
+  const auto found = measure.measure(shaft.vertices, &slot);
+  ASSERT_TRUE(found) << found.error();
+  const Wedge& wedge = found->wedge;
+  ASSERT_GT(wedge.surface_normal.z(), 0.9);
+  ASSERT_LT(wedge.depth_point_mm.z(), -1) << "nearer to the lower side";
+  EXPECT_NEAR(wedge.depth_mm, 5 - wedge.depth_point_mm.z(), 0.3);
 }
 
 }  // namespace

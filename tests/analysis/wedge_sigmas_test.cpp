@@ -81,5 +81,37 @@ TEST(WedgeSigmas, OfAFaceApartFromTheDepthPointAreLarge) {
   EXPECT_LT(apart.sigma().face_slope_rad[1], 0.03) << "dirt over the depth point hides all three";
 }
 
+TEST(WedgeSigmas, GrowWhereEveryFaceIsWornAndNotWhereOneIsBent) {
+  const WedgeSigma sharp = Fitted().sigma();
+  Fitted bent;
+  bent.seen.turn_rad = {0.1, 0.1, -0.01};
+  EXPECT_EQ(bent.sigma().opening_rad, sharp.opening_rad);
+  EXPECT_EQ(bent.sigma().depth_mm, sharp.depth_mm);
+  Fitted worn;
+  worn.seen.turn_rad = {0.1, 0.15, 0.1};
+  const WedgeSigma sigma = worn.sigma();
+  for (std::size_t k = 0; k < 3; ++k) {
+    EXPECT_GT(sigma.opening_rad[k], 0.25);
+    EXPECT_LT(sigma.opening_rad[k], 0.30);
+  }
+  EXPECT_GT(sigma.depth_mm, 0.09);
+  EXPECT_GT(sigma.depth_point_mm, 0.09);
+  EXPECT_GT(sigma.edge_rad[1], 4 * sigma.edge_rad[0]) << "edge 0, between faces worn alike";
+}
+
+TEST(WedgeSigmas, OfSlopesAndDepthGrowBesideARim) {
+  const WedgeSigma flat = Fitted().sigma();
+  Fitted curved;
+  curved.seen.rim_rad = 0.02;
+  EXPECT_EQ(curved.sigma().edge_slope_rad, flat.edge_slope_rad) << "as sides of tablets are";
+  Fitted beside;
+  beside.seen.rim_rad = 0.12;
+  const WedgeSigma sigma = beside.sigma();
+  EXPECT_GT(sigma.edge_slope_rad[0], 0.1);
+  EXPECT_GT(sigma.face_slope_rad[0], 0.1);
+  EXPECT_GT(sigma.depth_mm, 0.05);
+  EXPECT_EQ(sigma.opening_rad, flat.opening_rad) << "which no surface is needed for";
+}
+
 }  // namespace
 }  // namespace dubsar

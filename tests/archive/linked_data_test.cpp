@@ -144,6 +144,9 @@ TEST(WedgeAnnotations, SayByWhatTheTailsTurnGoes) {
               ::testing::HasSubstr("directional edge 1.25 mm long at 41 degrees as the side is read, "));
   wedge.place = {};
   EXPECT_THAT(wedge_in_words(wedge), ::testing::HasSubstr("directional edge 1.25 mm long, confidence"));
+  wedge.beyond_mesh[0] = true;
+  EXPECT_THAT(wedge_in_words(wedge),
+              ::testing::HasSubstr("1.25 mm long (the mesh ends before it: not measured), confidence"));
 }
 
 TEST(WedgeAnnotations, SayThatNoClayWasMeasured) {

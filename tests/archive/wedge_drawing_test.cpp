@@ -87,6 +87,17 @@ TEST(WedgeDrawing, MarksWhatAPersonHasCorrected) {
   EXPECT_EQ(svg.find("\"by_hand\""), svg.rfind("\"by_hand\"")) << "only of what was corrected";
 }
 
+TEST(WedgeDrawing, SaysOfALengthThatTheMeshEndsBeforeIt) {
+  Wedge wedge = wedge_at(1, Face::kObverse, 10, 4, 5);
+  wedge.edge_lengths_mm = {2.81, 0.73, 0.78};
+  const auto drawn = [&] { return wedge_drawing(Face::kObverse, {wedge}, {}, {.title = "t"}); };
+  EXPECT_THAT(drawn(), HasSubstr("edges 2.81 0.73 0.78 mm"));
+  EXPECT_THAT(drawn(), Not(HasSubstr("length_beyond_mesh")));
+  wedge.beyond_mesh[0] = true;
+  EXPECT_THAT(drawn(), HasSubstr("edges 2.81 (the mesh ends before it) 0.73 0.78 mm"));
+  EXPECT_THAT(drawn(), HasSubstr(R"("length_beyond_mesh":true})"));
+}
+
 TEST(WedgeDrawing, WritesASheetForEachSideThatHasWedges) {
   const test::TemporaryFolder folder;
   const std::vector<Wedge> wedges = {wedge_at(0, Face::kObverse, 0, 0, 5),

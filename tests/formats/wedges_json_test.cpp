@@ -41,6 +41,7 @@ TEST(WedgesJson, ReadsBackAllThatWasMeasured) {
   wedge.sigma.volume_mm3 = 0.75;
   wedge.intact = 0.5;
   wedge.faces_intact = {0.25, 0.5, 0.75};
+  wedge.roundness = -0.0625;
   wedge.place = {Face::kReverse, 4, 17, -1.5, 2};
   file.wedges = {wedge, Wedge{}};
   file.rejected = {{"too shallow", {7, 8, 9}}};
@@ -48,6 +49,7 @@ TEST(WedgesJson, ReadsBackAllThatWasMeasured) {
   WedgeProfile profile;
   profile.side = Face::kReverse;
   profile.count = 1;
+  profile.beyond_mesh = 2;
   profile.kinds[4] = 1;
   profile.quantiles[3][8] = 2.5;
   file.profiles = {profile};
@@ -72,6 +74,9 @@ TEST(WedgesJson, ReadsBackAllThatWasMeasured) {
   EXPECT_EQ(w.edge_bows_mm, wedge.edge_bows_mm);
   EXPECT_EQ(w.volume_mm3, 0.125);
   EXPECT_EQ(w.faces_intact, wedge.faces_intact);
+  EXPECT_EQ(w.roundness, -0.0625);
+  ASSERT_EQ(back->profiles.size(), 1U);
+  EXPECT_EQ(back->profiles[0].beyond_mesh, 2);
   EXPECT_NEAR(w.sigma.opening_rad[2], 0.3, 1e-14);
   EXPECT_NEAR(w.sigma.face_slope_rad[1], 0.5, 1e-14);
   EXPECT_NEAR(w.sigma.edge_slope_rad[2], 0.9, 1e-14);
