@@ -81,7 +81,11 @@ void relax_fifteen(benchmark::State& state) {
     for (std::size_t step = 1; step <= 4; ++step) {
       const std::size_t b = (a + step) % kScans;
       const RigidTransform off = RigidTransform::from_twist({0, 0, 0}, 0.01 * random.normal3());
-      pairs.push_back({a, b, off * truth[a].inverse() * truth[b], {0, 0, 0}, 1e4 * Matrix6d::Identity()});
+      PairConstraint& pair = pairs.emplace_back();
+      pair.a = a;
+      pair.b = b;
+      pair.a_from_b = off * truth[a].inverse() * truth[b];
+      pair.information = 1e4 * Matrix6d::Identity();
     }
   }
   JobContext job;
