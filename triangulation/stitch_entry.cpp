@@ -129,7 +129,9 @@ std::map<int, double> moved_mm(const Entries& entries) {
     double sum = 0, count = 0;
     for (const std::int32_t sample : s.node_sample) {
       if (sample >= 0) {
-        sum += static_cast<double>(s.back.at(s.points[static_cast<std::size_t>(sample)]).squaredNorm());
+        const auto i = static_cast<std::size_t>(sample);
+        const auto along = static_cast<double>(s.back.at(s.points[i]).dot(s.normal(i)));
+        sum += 3.0 * along * along;
         ++count;
       }
     }

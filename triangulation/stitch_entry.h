@@ -65,7 +65,7 @@ void weigh_places(Entries& entries);
 [[nodiscard]] std::vector<int> without_surface(const Entries& entries);
 
 /// The scans of which a motion is known that takes them to where the others have them, and how far it does:
-/// RMS over the surface, mm; by id.
+/// RMS over the surface of what shows along its normals, × √3, mm; by id.
 [[nodiscard]] std::map<int, double> moved_mm(const Entries& entries);
 
 /// The samples that it wants and that have not been averaged yet, node by node.

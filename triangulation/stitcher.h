@@ -80,7 +80,7 @@ class Stitcher {
   /// Of the scans that take part.
   [[nodiscard]] std::vector<Overlap> overlaps() const;
   /// Those that do not lie where their poses put them but where the others have them, and how far that is:
-  /// RMS over the scan's surface, mm; by id.
+  /// RMS over its surface of what shows along its normals, × √3, mm; by id.
   [[nodiscard]] std::map<int, double> moved_mm() const;
   /// The mesh of all scans, with normals, reliability, scans and flags; kCancelled is its only error, and the
   /// scans are held as before.

@@ -28,6 +28,8 @@ using test::Outcome;
 using test::run_command;
 
 constexpr const char* kSmallTablet = "sim:?seed=1&size=20x16x8&spacing=0.2&noise=0.02";
+/// Of which the fourth scan fits nowhere for certain until the fifth has come.
+constexpr const char* kAskingTablet = "sim:?seed=12&size=20x16x8&spacing=0.2&noise=0.02";
 
 class OperatorStory : public ::testing::Test {
  protected:
@@ -73,13 +75,11 @@ wait waiting-turn
 expect scan.3.fits
 # out, and back again
 key backspace
-wait scan.5.taken out
+wait scan.4.taken out
 wait waiting
-click scan.5
+click scan.4
 click restore
-wait scan.5.fits
-wait waiting-turn
-key space
+wait scan.4.fits
 wait waiting-turn
 key space
 wait waiting-turn
@@ -138,7 +138,7 @@ int presses_beyond_turns(const std::string& script) {
 
 TEST_F(OperatorStory, FromTheFirstKeyToASignedConclusiveTablet) {
   EXPECT_LE(presses_beyond_turns(kStory), 12);
-  const Outcome played = play(std::string(kStory) + kAfterwards);
+  const Outcome played = play_on(kAskingTablet, std::string(kStory) + kAfterwards);
   ASSERT_EQ(played.status, 0) << played.err;
   EXPECT_TRUE(fs::exists(session() + "-2/session.sqlite")) << "the next tablet's lies beside it";
   EXPECT_EQ(run_command({"verify", session() + ".results/package"}).status, 0);
