@@ -130,7 +130,8 @@ TEST_F(StitchCommand, SaysInOneLineWhichOfManyScansIsAtFault) {
   const nlohmann::json apart = outcome.json()["apart"];
   ASSERT_THAT(apart, SizeIs(5));
   EXPECT_EQ(apart[0]["ids"], nlohmann::json::array({0, 4}));
-  EXPECT_NEAR(apart[0]["mm"].get<double>(), 0.5, 0.05);
+  EXPECT_GT(apart[0]["mm"].get<double>(), 0.4) << "of 0.5 mm, what pairs within reach show of it";
+  EXPECT_LE(apart[0]["mm"].get<double>(), 0.5);
 }
 
 TEST_F(StitchCommand, AScanOfOneRowIsNotCalledMisplaced) {
