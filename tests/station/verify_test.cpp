@@ -39,7 +39,7 @@ class Verify : public testing::Test {
   static void SetUpTestSuite() {
     folder_ = new test::TemporaryFolder;
     scanned_ = run_command({"scan", "--auto", "--max-scans", "3", "--json", "--device",
-                            "sim:?seed=4&size=18x14x9&spacing=0.4", "--session",
+                            "sim:?seed=2&size=18x14x9&spacing=0.4", "--session",
                             (folder_->path() / "scanned").string()});
   }
   static void TearDownTestSuite() { delete folder_; }
