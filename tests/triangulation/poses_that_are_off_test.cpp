@@ -11,7 +11,6 @@
 #include <map>
 #include <utility>
 
-#include "core/order_statistics.h"
 #include "core/random.h"
 #include "sim/scanner.h"
 #include "tests/triangulation/support/ball_scans.h"
@@ -169,7 +168,8 @@ TEST(PosesThatAreOff, WhatIsToldOfAllOfThemOutlivesTheMotionOfOne) {
         of_several.push_back(mesh.sigma_mm[v]);
       }
     }
-    return static_cast<double>(median_of(of_several));
+    std::ranges::sort(of_several);
+    return static_cast<double>(of_several[of_several.size() / 20]);  // those of the scan that was moved
   };
   const double mean_mm = 0.15 / std::sqrt(3.0 * 6);
   EXPECT_GT(sigma_mm({0, 0, 0}), mean_mm);
