@@ -2,8 +2,6 @@
 // Copyright The Dubsar developers
 #include "formats/ply_scan.h"
 
-#include <cmath>
-
 #include "formats/byte_order.h"
 #include "formats/grid_ply.h"
 #include "tests/formats/format_support.h"
@@ -187,39 +185,6 @@ TEST(PlyScan, ASpacingThatTheSamplesContradictIsMeasuredAndTold) {
   EXPECT_THAT(told[0],
               HasSubstr("a.ply: its header says a spacing of 15 mm, but its samples lie 1 mm apart"));
   EXPECT_THAT(told[1], HasSubstr("mend or remove `obj_info dubsar_spacing_mm`"));
-}
-
-/// Of a cylinder of 6 mm, a row for every degree of a turntable.
-std::string turned_once(int degrees) {
-  constexpr int kColumns = 20;
-  std::string text = "ply\nformat ascii 1.0\nobj_info num_cols 20\nobj_info num_rows " +
-                     std::to_string(degrees) + "\nobj_info dubsar_direction -1 0 0\nelement vertex " +
-                     std::to_string(degrees * kColumns) +
-                     "\nproperty float x\nproperty float y\nproperty float z\nend_header\n";
-  for (int row = 0; row < degrees; ++row) {
-    // The scanner stands where the middle row is.
-    const double angle_rad = (row - 0.5 * degrees) * 3.14159265358979 / 180;
-    for (int col = 0; col < kColumns; ++col) {
-      text += std::to_string(6 * std::cos(angle_rad)) + " " + std::to_string(6 * std::sin(angle_rad)) + " " +
-              std::to_string(0.1 * col + 0.1) + "\n";
-    }
-  }
-  return text;
-}
-
-TEST(PlyScan, AGridThatGoesRoundABodyIsTold) {
-  std::vector<std::string> told;
-  const GridReadOptions options{
-      .remark = [&](const std::string& /*scan*/, const std::string& remark) { told.push_back(remark); }};
-  for (const int degrees : {300, 350, 360, 380}) {
-    told.clear();
-    EXPECT_TRUE(read_scan_bytes(turned_once(degrees), "a.ply", options).has_value());
-    ASSERT_EQ(told.size(), 1U) << degrees;
-    EXPECT_THAT(told[0], HasSubstr("it is seen from all sides, while a range grid shows one")) << degrees;
-  }
-  told.clear();
-  EXPECT_TRUE(read_scan_bytes(turned_once(120), "a.ply", options).has_value());
-  EXPECT_TRUE(told.empty());
 }
 
 TEST(PlyScan, CoordinatesOfAMapAreNotBlurredSilently) {
