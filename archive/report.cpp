@@ -198,7 +198,7 @@ Result<std::string> report_html(const ReportInput& input, const ReportPictures& 
   html += sign_off_section(input);
   html += regions_section(input, pictures);
   html += scans_section(input);
-  html += wedges_section(input);
+  html += wedges_section(input.wedges, input.wedge_profiles);
   html += accuracy_section(input);
   html += not_measured_section(input);
   html += timings_section(input);

@@ -16,6 +16,7 @@
 #include "core/rigid_transform.h"
 #include "core/scan_pose.h"
 #include "core/stage_times.h"
+#include "core/wedge_profile.h"
 
 namespace dubsar {
 
@@ -37,6 +38,7 @@ struct ReportInput {
   ColouredPoints red_points;         ///< red and excused samples in the model frame
   RigidTransform tablet_from_model;  ///< which way the faces look; see face_camera()
   std::string wedges;                ///< a sentence on them; empty: nobody looked
+  std::vector<WedgeProfile> wedge_profiles{};  ///< of the tablet and of each written side; empty: not known
   std::vector<std::string> accuracy;  ///< sentences on how good the registration is and how it was measured
   std::vector<std::string> calibration;  ///< sentences beyond checklist.calibration
   std::vector<std::string> not_measured;
@@ -61,5 +63,10 @@ struct ReportPictures;  // archive/report_pictures.h
 /// made, and neither verdict nor pictures follow from it. A page that report_html() or checklist_html() made;
 /// any other comes back as it is.
 [[nodiscard]] std::string page_renamed(std::string page, const std::string& title, const TabletWords& tablet);
+
+/// The page with other words on the wedges, likewise: they may be corrected, or left out of a package, after
+/// it was made. A page that tells of none stays as it is.
+[[nodiscard]] std::string page_with_wedges(std::string page, const std::string& sentence,
+                                           const std::vector<WedgeProfile>& profiles);
 
 }  // namespace dubsar

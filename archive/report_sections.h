@@ -18,7 +18,9 @@ namespace dubsar {
 [[nodiscard]] std::string red_sheet_section(const ReportPictures& pictures);
 [[nodiscard]] std::string scans_section(const ReportInput& input);
 [[nodiscard]] std::string accuracy_section(const ReportInput& input);
-[[nodiscard]] std::string wedges_section(const ReportInput& input);
+/// Nothing without a sentence on them.
+[[nodiscard]] std::string wedges_section(const std::string& sentence,
+                                         const std::vector<WedgeProfile>& profiles);
 [[nodiscard]] std::string not_measured_section(const ReportInput& input);
 [[nodiscard]] std::string timings_section(const ReportInput& input);
 

@@ -147,11 +147,6 @@ std::string accuracy_section(const ReportInput& input) {
   return html + paragraphs(input.calibration) + "</section>\n";
 }
 
-std::string wedges_section(const ReportInput& input) {
-  return input.wedges.empty() ? std::string()
-                              : "<section>\n<h2>Wedges</h2>\n" + paragraphs({input.wedges}) + "</section>\n";
-}
-
 std::string not_measured_section(const ReportInput& input) {
   std::string items;
   for (const std::string& sentence : input.not_measured) {

@@ -17,7 +17,8 @@ struct PendingCall {
 
 /// Stands for a call into a driver while it lasts: a driver is foreign code and may never come back, and
 /// whoever waits for it then has to know. On any thread; one that there is no memory for is not known of.
-/// A driver that calls exit() ends the program with the status of a device that failed, and a line.
+/// A driver that calls exit() within it, on its thread, ends the program with the status of a device that
+/// failed, and a line.
 class DriverCall {
  public:
   explicit DriverCall(const std::string& device) noexcept;

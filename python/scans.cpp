@@ -158,13 +158,24 @@ Result<Stitched> stitch_grids(const Grids& grids, const std::vector<ScanPose>& p
   if (const Status ready = stitcher.update(job); !ready) {
     return std::unexpected(ready.error());
   }
-  std::ranges::transform(*foreign, std::back_inserter(out.of_scans), sentence_of);
-  for (const ScanCopy& copy : stitcher.copies()) {
-    out.of_scans.push_back(left_out_sentence(names.at(copy.id), "", copy_reason(copy, names)));
+  const auto leave_out_copies = [&](const std::vector<ScanCopy>& copies) {
+    for (const ScanCopy& copy : copies) {
+      out.of_scans.push_back(left_out_sentence(names.at(copy.id), "", copy_reason(copy, names)));
+    }
+    for (const ScanCopy& copy : copies) {
+      names.erase(copy.id);
+    }
+  };
+  for (const ForeignFound& found : *foreign) {
+    if (!found.is_all()) {
+      out.of_scans.push_back(sentence_of(found));
+      continue;
+    }
+    out.of_scans.push_back(left_out_sentence(names.at(found.id), "", reason_of_all(found)));
+    leave_out_copies(take_out_with_copies(stitcher, found));
+    names.erase(found.id);
   }
-  for (const ScanCopy& copy : stitcher.copies()) {
-    names.erase(copy.id);
-  }
+  leave_out_copies(stitcher.copies());
   for (const int id : stitcher.without_surface()) {
     out.of_scans.push_back(left_out_sentence(names.at(id), "", no_surface_reason()));
     names.erase(id);

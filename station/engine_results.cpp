@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright The Dubsar developers
 #include "station/engine_impl.h"
+#include "station/kept_surface.h"
 #include "station/results.h"
 #include "station/session_pages.h"
 #include "station/session_wedges.h"
@@ -52,7 +53,10 @@ Status Engine::Impl::finish(EngineResult& result, JobContext& job) {
     facts.device = std::move(device);
   }
   facts.timings = result.timings;
-  facts.wedges = wedges ? wedge_sentence(*wedges) : std::string();
+  facts.wedges.clear();
+  if (wedges) {
+    tell_wedges(facts, *wedges);
+  }
   facts.gains.insert(facts.gains.end(), planning.gains().begin(), planning.gains().end());
   if (const Status s = keep_page_facts(*store, facts); !s) {
     return s;

@@ -24,14 +24,10 @@ constexpr const char* kWedges = "analysis/wedges.json";
 constexpr const char* kMeasured = "the wedges were measured anew";
 constexpr const char* kRun = "run";  // as results.cpp keeps it
 
-SessionWedges counted(const SessionStore& store, const WedgeFile& file) {
-  return {store.folder() / kWedges, file.wedges.size(), file.rejected.size()};
-}
-
 /// Those of this mesh; nothing where it has no surface to look at.
 Result<std::optional<SessionWedges>> wedges_of(SessionStore& store, const Mesh& mesh, JobContext& job) {
   if (const std::optional<WedgeFile> kept = stored_wedges(store, mesh, job)) {
-    return counted(store, *kept);
+    return counts_of(*kept, store.folder() / kWedges);
   }
   const Status taken = take_pages_back_once(store, kMeasured, kPlan);
   return taken ? keep_wedges(store, mesh, job) : std::unexpected(taken.error());
@@ -51,12 +47,12 @@ Result<Deliverables> keep_all_anew(SessionStore& store, const PlannedAgain& plan
     wedges = std::move(*kept);
   }
   if (wedges) {
-    facts.wedges = wedge_sentence(*wedges);
+    tell_wedges(facts, *wedges);
     if (Status noted = keep_wedges_word(store, facts.wedges); !noted) {
       return std::unexpected(noted.error());
     }
   } else {
-    facts.wedges = wedges_said(store, results.mesh, facts.wedges, job);
+    tell_kept_wedges(facts, store, results.mesh, job);
   }
   Result<Deliverables> files = keep_deliverables(store, report_input(results, *planned.stage, facts), job);
   if (files && wedges) {
@@ -72,13 +68,14 @@ Status make_wedges_anew(SessionStore& store, const std::vector<std::string>& nam
     return std::unexpected(mesh.error());
   }
   if (wanted(kWedges)) {
+    const bool same_as_before = kept_wedges(store, *mesh) == KeptWedges::kAsMeasuredNow;
     const auto wedges = keep_wedges(store, *mesh, job);
     if (!wedges || !*wedges) {
       return wedges ? Status() : std::unexpected(wedges.error());
     }
     const std::string said = page_facts_of(store).wedges;
     const std::string now = wedge_sentence(**wedges);
-    if (said.empty() || said == now) {
+    if (said.empty() || (said == now && same_as_before)) {
       return {};
     }
     const Status taken = take_pages_back_once(store, kMeasured, kPlan);
@@ -100,15 +97,28 @@ Status make_wedges_anew(SessionStore& store, const std::vector<std::string>& nam
   return {};
 }
 
-std::string wedges_said(const SessionStore& store, const Mesh& mesh, const std::string& before,
-                        const JobContext& job) {
-  if (before.empty()) {
-    return before;
+void tell_wedges(PageFacts& facts, const SessionWedges& wedges) {
+  facts.wedges = wedge_sentence(wedges);
+  facts.wedge_profiles = wedges.profiles;
+}
+
+void tell_kept_wedges(PageFacts& facts, const SessionStore& store, const Mesh& mesh, const JobContext& job) {
+  if (facts.wedges.empty()) {
+    return;
   }
   if (const std::optional<WedgeFile> kept = stored_wedges(store, mesh, job)) {
-    return wedge_sentence(counted(store, *kept));
+    tell_wedges(facts, counts_of(*kept, store.folder() / kWedges));
+    return;
   }
-  return "They were not measured anew: those in analysis/wedges.json are of the mesh as it was before.";
+  facts.wedge_profiles.clear();
+  if (kept_wedges(store, mesh) != KeptWedges::kOfAnotherSurface) {
+    facts.wedges =
+        "They were not measured anew: those in analysis/wedges.json are of this mesh, but were measured or "
+        "corrected in another way than now.";
+  } else {
+    facts.wedges =
+        "They were not measured anew: those in analysis/wedges.json are of the mesh as it was before.";
+  }
 }
 
 Status keep_wedges_word(SessionStore& store, const std::string& sentence) {

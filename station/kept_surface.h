@@ -33,10 +33,11 @@ namespace dubsar {
 [[nodiscard]] Status make_wedges_anew(SessionStore& store, const std::vector<std::string>& names,
                                       JobContext& job);
 
-/// What a page of this mesh may say of the wedges that the session keeps. `before`: the sentence of its last
-/// run, empty where none were looked for.
-[[nodiscard]] std::string wedges_said(const SessionStore& store, const Mesh& mesh, const std::string& before,
-                                      const JobContext& job);
+/// Into what a page tells, in the place of what it told before.
+void tell_wedges(PageFacts& facts, const SessionWedges& wedges);
+/// What a page of this mesh may tell of the wedges that the session keeps, likewise; nothing where the last
+/// run looked for none.
+void tell_kept_wedges(PageFacts& facts, const SessionStore& store, const Mesh& mesh, const JobContext& job);
 /// That sentence into the facts of the last run, whose others stay; nothing where none are kept.
 [[nodiscard]] Status keep_wedges_word(SessionStore& store, const std::string& sentence);
 

@@ -2,6 +2,7 @@
 // Copyright The Dubsar developers
 // What the operator says of the tablet: kept as its line is left, and tried again where that was refused.
 #include "station/live_session.h"
+#include "station/session_pages.h"
 
 namespace dubsar {
 
@@ -28,7 +29,8 @@ void LiveSession::keep_record(const TabletRecord& record) {
   Result<SessionStore> store =
       SessionStore::open_or_create(options_.session, SessionStore::OnDamage::kRefuse);
   const Status kept = store ? keep_tablet_record(*store, record) : std::unexpected(store.error());
-  end(kept);
+  JobContext job;
+  end(kept ? pages_follow_record(*store, job) : kept);
   const std::scoped_lock lock(mutex_);
   state_.record_kept = kept.has_value();
 }

@@ -135,8 +135,9 @@ Result<bool> MakingAnew::make_mesh() {
   const PageFacts facts = page_facts_of(store_);
   // Wedges that are lost as well are measured on what stands then.
   const bool is_other =
-      !facts.wedges.empty() && (is_named(lost_, kWedges) ? !is_of_the_mesh_before(store_, results.poses)
-                                                         : !stored_wedges(store_, results.mesh, job_));
+      !facts.wedges.empty() &&
+      (is_named(lost_, kWedges) ? !is_of_the_mesh_before(store_, results.poses)
+                                : kept_wedges(store_, results.mesh) == KeptWedges::kOfAnotherSurface);
   if (Status kept = is_other ? keep({"analysis", "export"}) : Status(); !kept) {
     return std::unexpected(kept.error());
   }
@@ -158,7 +159,7 @@ Status MakingAnew::make_pages() {
   std::vector<std::string> pages = lost_;
   std::erase(pages, kSessionMesh);
   PageFacts facts = page_facts_of(store_);
-  facts.wedges = wedges_said(store_, planned_->results.mesh, facts.wedges, job_);
+  tell_kept_wedges(facts, store_, planned_->results.mesh, job_);
   const Result<Deliverables> files =
       keep_deliverables(store_, report_input(planned_->results, *planned_->stage, facts), pages, job_);
   return files ? Status() : std::unexpected(files.error());

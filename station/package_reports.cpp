@@ -35,19 +35,23 @@ struct Pages {
 
 Result<Pages> pages_of(const PackageContent& content) {
   const PictureWords words = picture_words(content.label, content.identifier + ", red map");
+  PageFacts facts = content.facts;
+  facts.title = content.identifier;
+  if (content.wedges) {
+    const SessionWedges wedges = counts_of(*content.wedges, "wedges/wedges.json");
+    facts.wedges = wedge_sentence(wedges, wedges.json.string());
+    facts.wedge_profiles = wedges.profiles;
+  } else if (!content.has(PackagePart::kWedges) && !facts.wedges.empty()) {
+    facts.wedges = "They are left out of this package.";
+  }
   if (const auto& kept = content.source.pages()) {
     Result<std::string> sheet = png_with_words(kept->red_sheet, words);
     if (!sheet) {
       return std::unexpected(sheet.error());
     }
-    return Pages{moved(kept->report, content), moved(kept->checklist, content), std::move(*sheet)};
-  }
-  PageFacts facts = content.facts;
-  facts.title = content.identifier;
-  if (content.wedges) {
-    facts.wedges = wedge_sentence({"wedges/wedges.json", content.wedges->wedges.size(),
-                                   content.wedges->rejected.size(), content.wedges->text_certainty},
-                                  "wedges/wedges.json");
+    // What a person has corrected since does not make the verdict another one.
+    return Pages{page_with_wedges(moved(kept->report, content), facts.wedges, facts.wedge_profiles),
+                 moved(kept->checklist, content), std::move(*sheet)};
   }
   ReportInput input = content.source.input(facts);
   input.when = content.when;

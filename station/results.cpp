@@ -194,6 +194,7 @@ ReportInput report_input(const Results& results, const PlanningStage& stage, con
           .red_points = stage.red_points(results.mesh),
           .tablet_from_model = stage.tablet_from_model(results.mesh),
           .wedges = facts.wedges,
+          .wedge_profiles = facts.wedge_profiles,
           .accuracy = accuracy_sentences(counting, facts.gains),
           .calibration = {},
           .not_measured = facts.wedges.empty() ? std::vector<std::string>{"Wedges: they were not looked for."}

@@ -48,10 +48,11 @@ struct PageFacts {
   TabletWords tablet{};
   std::string device;
   StageTimes timings;
-  std::vector<ViewGain> gains;     ///< of the scans that were asked for, as they came
-  std::string wedges;              ///< a sentence on them; empty where they were not measured
-  std::vector<ScanEntry> scans{};  ///< of the session, those that were taken out too
-  std::string program{};           ///< that scanned and judged, as the session says; empty when it does not
+  std::vector<ViewGain> gains;                 ///< of the scans that were asked for, as they came
+  std::string wedges;                          ///< a sentence on them; empty where they were not measured
+  std::vector<WedgeProfile> wedge_profiles{};  ///< of these; not kept with the facts, as wedges.json has them
+  std::vector<ScanEntry> scans{};              ///< of the session, those that were taken out too
+  std::string program{};  ///< that scanned and judged, as the session says; empty when it does not
 };
 
 /// The input of pages and pictures. Refers to the results.

@@ -4,7 +4,9 @@
 
 #include <fmt/format.h>
 
+#include <cstdio>
 #include <optional>
+#include <set>
 #include <system_error>
 
 #include "core/log.h"
@@ -29,6 +31,21 @@ bool is_there(const fs::path& file) {
   return fs::exists(fs::symlink_status(file, unknown));
 }
 
+/// Those that are there, rising. A damaged one may have been put aside from among them.
+std::set<int> kept_numbers(const fs::path& session) {
+  std::set<int> numbers;
+  std::error_code unreadable;
+  for (const fs::directory_entry& entry : fs::directory_iterator(session / "mesh", unreadable)) {
+    int n = 0;
+    const std::string name = "mesh/" + entry.path().filename().string();
+    if (std::sscanf(name.c_str(), "mesh/model.of-selections-%9d.ply", &n) == 1 && n > 0 &&
+        name == kept_name(n)) {
+      numbers.insert(n);
+    }
+  }
+  return numbers;
+}
+
 bool is_of(const fs::path& mesh, const std::string& surface_xxh128) {
   const Result<Mesh> read = read_mesh(mesh);
   return read && surface_digest(*read) == surface_xxh128;
@@ -51,7 +68,7 @@ std::vector<std::string> meshes_of_selections(const fs::path& session, const std
 
 std::vector<std::string> kept_selected_meshes(const fs::path& session) {
   std::vector<std::string> out;
-  for (int n = 1; is_there(session / kept_name(n)); ++n) {
+  for (const int n : kept_numbers(session)) {
     out.push_back(kept_name(n));
   }
   return out;
@@ -74,7 +91,8 @@ Status keep_selected_mesh(SessionStore& store, const Mesh& next) {
   if (!bytes) {
     return std::unexpected(bytes.error());
   }
-  const std::string name = kept_name(static_cast<int>(kept_selected_meshes(session).size()) + 1);
+  const std::set<int> numbers = kept_numbers(session);
+  const std::string name = kept_name(numbers.empty() ? 1 : *numbers.rbegin() + 1);
   const Status kept = store.replace_file(
       name, [&](const fs::path& to) { return write_file_atomically(to, std::string_view(*bytes)); });
   if (kept) {

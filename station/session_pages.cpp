@@ -123,6 +123,28 @@ Status take_pages_back_once(SessionStore& store, std::string_view what, std::str
   return pages_are_taken_back(store) ? Status() : take_back(store, what, mend);
 }
 
+Status pages_follow_record(SessionStore& store, JobContext& job) {
+  if (std::ranges::none_of(kPages, [&](const char* page) { return is_there(store, page); })) {
+    return {};
+  }
+  const Result<VerifyReport> found = store.verify(job);
+  if (!found) {
+    return std::unexpected(found.error());
+  }
+  const PageFacts facts = page_facts_of(store);
+  for (const char* page : kPages) {
+    if (std::ranges::find(found->whole, page) == found->whole.end()) {
+      continue;
+    }
+    const Result<std::string> text = read_whole_file(store.folder() / page);
+    const std::string renamed = text ? page_renamed(*text, facts.title, facts.tablet) : std::string();
+    if (Status put = text && renamed != *text ? put_text(store, page, renamed) : Status(); !put) {
+      return put;
+    }
+  }
+  return {};
+}
+
 bool pages_are_taken_back(const SessionStore& store) {
   int there = 0;
   for (const char* page : kPages) {
@@ -178,7 +200,7 @@ Result<bool> keep_pages_anew(SessionStore& store, const PlannedAgain& planned, J
     return taken ? Result<bool>(false) : std::unexpected(taken.error());
   }
   PageFacts facts = page_facts_of(store);
-  facts.wedges = wedges_said(store, results.mesh, facts.wedges, job);
+  tell_kept_wedges(facts, store, results.mesh, job);
   const Result<FileLabel> label = label_of_scans(store);
   const Status written = label ? write_pages(store, report_input(results, *planned.stage, facts), *label, job)
                                : std::unexpected(label.error());

@@ -33,6 +33,11 @@ Status take_pages_back(SessionStore& store, std::string_view what, std::string_v
 /// Nothing where they were taken back before: then the first change since stands on them.
 Status take_pages_back_once(SessionStore& store, std::string_view what, std::string_view mend);
 
+/// Puts what the session says of the tablet now at the head of the pages that are there: neither verdict nor
+/// signature follow from it. A damaged page stays as it is. Reads the session whole where there is a page.
+/// Errors: kCancelled, kStorage.
+Status pages_follow_record(SessionStore& store, JobContext& job);
+
 /// Whether there is a page, and none but those that say that they are behind.
 [[nodiscard]] bool pages_are_taken_back(const SessionStore& store);
 

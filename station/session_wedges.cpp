@@ -40,6 +40,33 @@ std::string digest_of(const Mesh& mesh) {
   return sum.hex();
 }
 
+/// What the session notes of its wedges.
+struct NotedWedges {
+  std::string file;
+  std::string sha256;
+  std::string surface_sha256;
+  bool is_of_now = false;  ///< measured in the way of now, and corrected as is said now
+};
+
+std::optional<NotedWedges> noted_wedges(const SessionStore& store) {
+  const auto text = store.load_document(kDocument);
+  if (!text || !*text) {
+    return std::nullopt;
+  }
+  const Result<JsonDocument> document = JsonDocument::parse(**text, kDocument);
+  if (!document) {
+    return std::nullopt;
+  }
+  const JsonNode root = document->root();
+  NotedWedges noted{root.at("file").text(), root.at("sha256").text(), root.at("surface_sha256").text()};
+  const auto method = root.find("method");
+  const auto corrections = root.find("corrections");
+  const std::string corrected = corrections ? corrections->text() : corrections_to_json({});
+  noted.is_of_now = method && method->integer(0, std::numeric_limits<int>::max()) == kWedgeMethod &&
+                    corrected == corrections_to_json({{}, session_corrections(store)});
+  return document->status("") ? std::optional(std::move(noted)) : std::nullopt;
+}
+
 }  // namespace
 
 std::vector<WedgeCorrection> session_corrections(const SessionStore& store) {
@@ -95,7 +122,7 @@ Result<std::optional<SessionWedges>> keep_wedges(SessionStore& store, const Mesh
   if (const Status made = make_folder(folder); !made) {
     return std::unexpected(made.error());
   }
-  SessionWedges out{folder / "wedges.json", file.wedges.size(), file.rejected.size(), file.text_certainty};
+  SessionWedges out = counts_of(file, folder / "wedges.json");
   std::vector<WedgeDrawing> drawings;
   if (file.text_from_model) {
     drawings = wedge_drawings(folder, file.wedges, *file.text_from_model,
@@ -128,35 +155,32 @@ Result<std::optional<SessionWedges>> keep_wedges(SessionStore& store, const Mesh
   return out;
 }
 
+KeptWedges kept_wedges(const SessionStore& store, const Mesh& mesh) {
+  const std::optional<NotedWedges> noted = noted_wedges(store);
+  if (!noted || noted->surface_sha256 != digest_of(mesh)) {
+    return KeptWedges::kOfAnotherSurface;
+  }
+  return noted->is_of_now ? KeptWedges::kAsMeasuredNow : KeptWedges::kMeasuredOtherwise;
+}
+
 std::optional<WedgeFile> stored_wedges(const SessionStore& store, const Mesh& mesh, const JobContext& job) {
-  const auto text = store.load_document(kDocument);
-  if (!text || !*text) {
+  const std::optional<NotedWedges> noted = noted_wedges(store);
+  if (!noted || !noted->is_of_now || noted->surface_sha256 != digest_of(mesh)) {
     return std::nullopt;
   }
-  const Result<JsonDocument> document = JsonDocument::parse(**text, kDocument);
-  if (!document) {
+  const Result<std::string> now = sha256_of_file(store.folder() / noted->file, job);
+  if (!now || *now != noted->sha256) {
     return std::nullopt;
   }
-  const std::string file = document->root().at("file").text();
-  const std::string sum = document->root().at("sha256").text();
-  const std::string surface = document->root().at("surface_sha256").text();
-  const auto method = document->root().find("method");
-  const bool is_of_now = method && method->integer(0, std::numeric_limits<int>::max()) == kWedgeMethod;
-  const auto corrections = document->root().find("corrections");
-  const std::string corrected = corrections ? corrections->text() : corrections_to_json({});
-  if (!document->status("") || !is_of_now || surface != digest_of(mesh) ||
-      corrected != corrections_to_json({{}, session_corrections(store)})) {
-    return std::nullopt;
-  }
-  const Result<std::string> now = sha256_of_file(store.folder() / file, job);
-  if (!now || *now != sum) {
-    return std::nullopt;
-  }
-  Result<WedgeFile> wedges = read_wedges(store.folder() / file);
+  Result<WedgeFile> wedges = read_wedges(store.folder() / noted->file);
   if (wedges) {
     wedges->method = kWedgeMethod;  // the file of a version before this one does not say it
   }
   return wedges ? std::optional(std::move(*wedges)) : std::nullopt;
+}
+
+SessionWedges counts_of(const WedgeFile& file, fs::path json) {
+  return {std::move(json), file.wedges.size(), file.rejected.size(), file.text_certainty, file.profiles};
 }
 
 std::string wedge_sentence(const SessionWedges& wedges, const std::string& where) {

@@ -22,6 +22,7 @@ struct SessionWedges {
   std::size_t count = 0;
   std::size_t rejected = 0;
   double text_certainty = 0;
+  std::vector<WedgeProfile> profiles;  ///< as in the file
 };
 
 /// What the scholar has said of the session's wedges in the viewer; a file that cannot be read is passed over
@@ -39,10 +40,20 @@ struct SessionWedges {
 [[nodiscard]] Result<std::optional<SessionWedges>> keep_wedges(SessionStore& store, const Mesh& mesh,
                                                                const JobContext& job);
 
-/// The session's stored wedges, when they were measured on this very surface and corrected as the session
-/// says now, and their file is as it was stored; nothing otherwise.
+/// What the wedges are that the session keeps, whatever has become of their file.
+enum class KeptWedges {
+  kOfAnotherSurface,   ///< or there are none
+  kMeasuredOtherwise,  ///< on this one, in another way, or with other corrections than the session has now
+  kAsMeasuredNow
+};
+[[nodiscard]] KeptWedges kept_wedges(const SessionStore& store, const Mesh& mesh);
+
+/// Those that were measured as now, when their file is as it was stored; nothing otherwise.
 [[nodiscard]] std::optional<WedgeFile> stored_wedges(const SessionStore& store, const Mesh& mesh,
                                                      const JobContext& job);
+
+/// What is told of the wedges of this file, which `json` leads to.
+[[nodiscard]] SessionWedges counts_of(const WedgeFile& file, std::filesystem::path json);
 
 /// One sentence on them, for pages. where: their file, as the reader of the page finds it.
 [[nodiscard]] std::string wedge_sentence(const SessionWedges& wedges,

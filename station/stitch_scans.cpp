@@ -58,4 +58,14 @@ Result<std::vector<ForeignFound>> add_without_foreign(Stitcher& stitcher, std::s
   return flags.foreign();
 }
 
+std::vector<ScanCopy> take_out_with_copies(Stitcher& stitcher, const ForeignFound& found) {
+  std::vector<ScanCopy> copies = stitcher.copies();
+  std::erase_if(copies, [&](const ScanCopy& copy) { return copy.of_id != found.id; });
+  for (const ScanCopy& copy : copies) {
+    stitcher.remove(copy.id);
+  }
+  stitcher.remove(found.id);
+  return copies;
+}
+
 }  // namespace dubsar

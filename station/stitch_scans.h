@@ -32,4 +32,8 @@ namespace dubsar {
                                                                     std::span<const ScanPose> poses,
                                                                     const JobContext& job);
 
+/// Takes a scan of which nothing is left (ForeignFound::is_all()) out again, and with it those that only
+/// repeat its samples, one of which would come in its place. These, as they were known until then.
+std::vector<ScanCopy> take_out_with_copies(Stitcher& stitcher, const ForeignFound& found);
+
 }  // namespace dubsar

@@ -212,6 +212,9 @@ Result<int> describe(const std::string& path, const std::vector<DescribedField>&
   if (const Status kept = keep_tablet_record(*store, record); !kept) {
     return std::unexpected(kept.error());
   }
+  if (const Status followed = pages_follow_record(*store, context.job); !followed) {
+    return std::unexpected(followed.error());
+  }
   if (context.json) {
     CommandContext::print(
         {{"session", path}, {"tablet", nlohmann::ordered_json::parse(tablet_record_to_json(record))}});

@@ -331,7 +331,9 @@ Result<int> stitch(const StitchArguments& arguments, CommandContext& context) {
 
 void add_stitch(CLI::App& app, Action& chosen) {
   CLI::App* verb = app.add_subcommand(
-      "stitch", "One mesh of all registered scans; status 1 when one of them cannot be read");
+      "stitch",
+      "One mesh of all registered scans; status 1 when one of them cannot be read, or stands in the way of "
+      "others with all that it has");
   const auto arguments = std::make_shared<StitchArguments>();
   arguments->set.add_to(*verb, true);
   verb->add_option(

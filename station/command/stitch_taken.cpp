@@ -8,10 +8,26 @@
 
 #include "core/log.h"
 #include "station/offline.h"
+#include "station/stitch_scans.h"
 #include "station/stitch_warnings.h"
 #include "station/tablet_flags.h"
 
 namespace dubsar {
+
+namespace {
+
+void leave_out(const std::vector<ScanCopy>& copies, Taken& taken) {
+  for (const ScanCopy& copy : copies) {
+    taken.leave_out(
+        {copy.id, taken.names.at(copy.id), LeftOutScan::Why::kCopy, copy_reason(copy, taken.names)});
+  }
+  for (const ScanCopy& copy : copies) {
+    taken.names.erase(copy.id);
+    --taken.scans;
+  }
+}
+
+}  // namespace
 
 Status leave_out_unread(const ScanSet& set, const std::filesystem::path& path,
                         const std::vector<ScanPose>* file, Taken& taken) {
@@ -46,21 +62,14 @@ void tell_foreign(const std::vector<ForeignFound>& foreign, Taken& taken, Stitch
       continue;
     }
     taken.leave_out(left_out(found, taken.names.at(found.id)));
-    stitcher.remove(found.id);
+    leave_out(take_out_with_copies(stitcher, found), taken);
     taken.names.erase(found.id);
     --taken.scans;
   }
 }
 
 void leave_out_copies(const Stitcher& stitcher, Taken& taken) {
-  for (const ScanCopy& copy : stitcher.copies()) {
-    taken.leave_out(
-        {copy.id, taken.names.at(copy.id), LeftOutScan::Why::kCopy, copy_reason(copy, taken.names)});
-  }
-  for (const ScanCopy& copy : stitcher.copies()) {
-    taken.names.erase(copy.id);
-    --taken.scans;
-  }
+  leave_out(stitcher.copies(), taken);
 }
 
 void leave_out_without_surface(const Stitcher& stitcher, Taken& taken) {

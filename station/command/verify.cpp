@@ -301,8 +301,8 @@ void add_verify(CLI::App& app, Action& chosen) {
   verb->add_option("path", arguments->path, "a session folder, a bag or a .grid file")->required();
   CLI::Option* repair =
       verb->add_flag("--repair", arguments->repair,
-                     "mend a session with what it has, or a bag from a copy; damaged originals are "
-                     "kept aside");
+                     "mend a session with what it has, or a bag from a copy; damaged originals "
+                     "are kept aside, and so is what was whole of a mesh that does not come back");
   verb->add_option("--from", arguments->copy,
                    "a copy of the session, or of the bag, to bring damaged files and lost records back from")
       ->needs(repair);

@@ -109,6 +109,9 @@ TEST_F(ExportByHand, WithoutWedgesThePersonsWorkIsThereAllTheSame) {
   ASSERT_EQ(done.status, 0) << done.err;
   EXPECT_TRUE(packed("wedges/corrections.json") == bytes_of(corrections()));
   EXPECT_FALSE(fs::exists(bag() / "data/wedges/wedges.json"));
+  EXPECT_THAT(packed("report/report.html"),
+              AllOf(HasSubstr("<h2>Wedges</h2>\n<p>They are left out of this package.</p>"),
+                    Not(HasSubstr("wedges/wedges.json"))));
 }
 
 TEST_F(ExportByHand, WhatIsDamagedIsKeptAndToldOf) {

@@ -341,7 +341,25 @@ TEST_F(Export, PagesSayWhichTabletItIsEvenWhenThatWasSaidAfterTheScan) {
     EXPECT_THAT(text, HasSubstr("<h1>P123456</h1>"));
     EXPECT_THAT(text, HasSubstr("<dt>Museum number</dt><dd>BM 12345</dd>"));
     EXPECT_THAT(text, HasSubstr("<dd>A &lt;house&gt;</dd>"));
+    // The session's own, which are printed and signed, say so too.
+    const std::string own = bytes_of(at("described") / "export" / page);
+    EXPECT_THAT(own, HasSubstr("<title>BM 12345: " + std::string(kind) + "</title>"));
+    EXPECT_THAT(own, HasSubstr("<dt>CDLI number</dt><dd>P123456</dd>"));
   }
+  EXPECT_EQ(run_command({"verify", at("described").string()}).status, 0);
+}
+
+TEST_F(Export, APageThatIsDamagedDoesNotBecomeWholeByANumber) {
+  fs::copy(at("session"), at("damaged"), fs::copy_options::recursive);
+  const fs::path page = at("damaged") / "export/report.html";
+  std::string text = bytes_of(page);
+  text.back() = '!';
+  std::ofstream(page, std::ios::binary) << text;
+  EXPECT_EQ(run_command({"session", "describe", at("damaged").string(), "--museum-number", "BM 1"}).status,
+            0);
+  EXPECT_TRUE(bytes_of(page) == text);
+  EXPECT_THAT(bytes_of(at("damaged") / "export/checklist.html"), HasSubstr("<h1>BM 1</h1>"));
+  EXPECT_EQ(run_command({"verify", at("damaged").string()}).status, 1);
 }
 
 }  // namespace

@@ -7,23 +7,37 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <nlohmann/json.hpp>
+
 #include "formats/atomic_file.h"
 #include "formats/mesh_io.h"
+#include "formats/sha2.h"
+#include "station/results.h"
 #include "station/selected_mesh.h"
+#include "station/session_pages.h"
 #include "tests/support/raster_mesh.h"
 #include "tests/support/temporary_folder.h"
 
 namespace dubsar {
 namespace {
 
-TEST(KeptSurface, ALostDrawingIsOfTheWedgesAsTheyAre) {
-  const test::TemporaryFolder folder;
-  SessionStore store = SessionStore::open_or_create(folder.path() / "s").value();
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+/// A square of 1 mm in a plane: there is no wedge in it.
+Mesh blank() {
   Mesh mesh;
   for (int v = 0; v < 4; ++v) {
     mesh.positions.emplace_back(static_cast<float>(v % 2), static_cast<float>(v / 2), 0.0F);
   }
   test::add_raster_faces(mesh, 0, 1);
+  return mesh;
+}
+
+TEST(KeptSurface, ALostDrawingIsOfTheWedgesAsTheyAre) {
+  const test::TemporaryFolder folder;
+  SessionStore store = SessionStore::open_or_create(folder.path() / "s").value();
+  const Mesh mesh = blank();
   ASSERT_TRUE(write_mesh(store.folder() / kSessionMesh, mesh));
   // Nobody could measure this one on that mesh.
   WedgeFile file;
@@ -45,6 +59,82 @@ TEST(KeptSurface, ALostDrawingIsOfTheWedgesAsTheyAre) {
   EXPECT_EQ(bytes("analysis/reverse.svg"), "as it was");
   EXPECT_EQ(bytes("analysis/wedges.json"), wedges);
   EXPECT_THAT(store.verify(job).value().whole, ::testing::Contains("analysis/obverse.svg"));
+}
+
+/// The session keeps these as the wedges of `mesh`.
+void keep(SessionStore& store, const Mesh& mesh, const WedgeFile& file) {
+  ASSERT_TRUE(keep_wedges(store, mesh, {}).value());
+  ASSERT_TRUE(
+      store.replace_file("analysis/wedges.json", [&](const auto& to) { return write_wedges(to, file); }));
+  nlohmann::json noted = nlohmann::json::parse(store.load_document("wedges").value().value());
+  noted["sha256"] = sha256_of_file(store.folder() / "analysis/wedges.json", {}).value();
+  ASSERT_TRUE(store.save_document("wedges", noted.dump()));
+}
+
+TEST(KeptSurface, OfWedgesThatAreKeptPagesTellWhatTheyToldWhenTheyWereMeasured) {
+  const test::TemporaryFolder folder;
+  SessionStore store = SessionStore::open_or_create(folder.path() / "s").value();
+  const Mesh mesh = blank();
+  WedgeFile file;
+  file.text_from_model = RigidTransform();
+  file.text_certainty = 0.7;
+  file.wedges.resize(6);
+  WedgeProfile& profile = file.profiles.emplace_back();
+  profile.count = 6;
+  profile.quantiles[0].fill(0.25);
+  keep(store, mesh, file);
+  PageFacts facts;
+  tell_kept_wedges(facts, store, mesh, {});
+  EXPECT_EQ(facts.wedges, "") << "nobody looked for them in the last run";
+  facts.wedges = "as it was";
+  tell_kept_wedges(facts, store, mesh, {});
+  EXPECT_THAT(facts.wedges, ::testing::StartsWith("6 wedges were measured"));
+  EXPECT_THAT(facts.wedges, Not(HasSubstr("direction of writing"))) << "it shows";
+  ASSERT_EQ(facts.wedge_profiles.size(), 1U);
+  EXPECT_EQ(facts.wedge_profiles.front().quantiles[0][4], 0.25);
+
+  file.text_certainty = 0;
+  keep(store, mesh, file);
+  tell_kept_wedges(facts, store, mesh, {});
+  EXPECT_THAT(facts.wedges, HasSubstr("No direction of writing shows"));
+
+  // What was measured otherwise is none of the other mesh.
+  nlohmann::json noted = nlohmann::json::parse(store.load_document("wedges").value().value());
+  noted["method"] = noted["method"].get<int>() - 1;
+  ASSERT_TRUE(store.save_document("wedges", noted.dump()));
+  tell_kept_wedges(facts, store, mesh, {});
+  EXPECT_THAT(facts.wedges, HasSubstr("are of this mesh"));
+  EXPECT_EQ(kept_wedges(store, mesh), KeptWedges::kMeasuredOtherwise);
+
+  // Of another surface nothing is told that those say.
+  Mesh other = mesh;
+  other.positions[0].z() = 1;
+  tell_kept_wedges(facts, store, other, {});
+  EXPECT_THAT(facts.wedges, ::testing::EndsWith("of the mesh as it was before."));
+  EXPECT_EQ(kept_wedges(store, other), KeptWedges::kOfAnotherSurface);
+  EXPECT_TRUE(facts.wedge_profiles.empty());
+}
+
+TEST(KeptSurface, PagesThatTellOfAnotherWayOfMeasuringAreTakenBackThoughTheNumberIsTheSame) {
+  const test::TemporaryFolder folder;
+  SessionStore store = SessionStore::open_or_create(folder.path() / "s").value();
+  const Mesh mesh = blank();
+  ASSERT_TRUE(write_mesh(store.folder() / kSessionMesh, mesh));
+  const std::optional<SessionWedges> kept = keep_wedges(store, mesh, {}).value();
+  PageFacts facts;
+  tell_wedges(facts, *kept);
+  ASSERT_TRUE(keep_page_facts(store, facts));
+  ASSERT_TRUE(store.replace_file("export/report.html", [](const auto& to) {
+    return write_file_atomically(to, std::string_view("<main>\n<p>So many wedges.</p>\n</main>"));
+  }));
+  JobContext job;
+  ASSERT_TRUE(make_wedges_anew(store, {"analysis/wedges.json"}, job));
+  EXPECT_FALSE(pages_are_taken_back(store)) << "measured as before, on the same mesh";
+  nlohmann::json noted = nlohmann::json::parse(store.load_document("wedges").value().value());
+  noted["method"] = noted["method"].get<int>() - 1;
+  ASSERT_TRUE(store.save_document("wedges", noted.dump()));
+  ASSERT_TRUE(make_wedges_anew(store, {"analysis/wedges.json"}, job));
+  EXPECT_TRUE(pages_are_taken_back(store));
 }
 
 }  // namespace

@@ -69,6 +69,28 @@ TEST_F(StitchScans, LeavesOutWhatWasInTheWay) {
   EXPECT_LT(highest_mm, *std::ranges::max_element(scans[1].grid->z) + 1.5);
 }
 
+TEST_F(StitchScans, NoCopyComesInThePlaceOfAScanOfWhichNothingIsLeft) {
+  for (const int number : {0, 1, 2, 3}) {
+    take(number);
+  }
+  poses[0].model_from_scanner.translation_mm.z() += 10;
+  scans.push_back(prepare_scan(7, RangeGrid(*scans[0].grid), std::nullopt));
+  poses.push_back(poses[0]);
+  poses.back().id = 7;
+  const auto foreign = add();
+  ASSERT_TRUE(foreign) << foreign.error().line();
+  ASSERT_THAT(*foreign, SizeIs(1));
+  ASSERT_TRUE(foreign->front().is_all());
+  const std::vector<ScanCopy> copies = take_out_with_copies(stitcher, foreign->front());
+  ASSERT_THAT(copies, SizeIs(1));
+  EXPECT_EQ(copies.front().of_id, foreign->front().id);
+  double highest_mm = 0;
+  for (const Eigen::Vector3f& p : stitcher.mesh().positions) {
+    highest_mm = std::max<double>(highest_mm, p.z());
+  }
+  EXPECT_LT(highest_mm, *std::ranges::max_element(scans[1].grid->z) + 1.5);
+}
+
 TEST_F(StitchScans, TakesNoScanThatIsNotRegistered) {
   take(0);
   take(1);

@@ -336,7 +336,10 @@ void ViewerScreen::draw_wedge_table(UiContext& ui, ImVec2 size, bool with_length
         if (with_length) {
           ImGui::TableNextColumn();
           const auto leading = static_cast<std::size_t>(std::clamp(wedge.directional_edge, 0, 2));
-          ImGui::TextUnformatted(decimal(wedge.edge_lengths_mm[leading], 2, ui.preferences.language).c_str());
+          // Where the mesh ends before the edge does it is a guess, as in the drawings.
+          const std::string mark = wedge.beyond_mesh[leading] ? "~" : "";
+          ImGui::TextUnformatted(
+              (mark + decimal(wedge.edge_lengths_mm[leading], 2, ui.preferences.language)).c_str());
         }
       }
     }
