@@ -22,7 +22,7 @@ void LiveSession::watch_camera(bool on) {
     on = on && !halted_;
     if (watch_ && watch_->ended()) {
       over = std::exchange(watch_, nullptr);
-      if (!busy_) {
+      if (!busy_ || unasked_) {
         device_told_.reset();
       }
       on = on && over == nullptr;  // one that ended by itself has said why; the next call tries again
@@ -31,7 +31,7 @@ void LiveSession::watch_camera(bool on) {
       engine_->post(WatchCamera{on});
     } else if (!on && watch_) {
       watch_->stop();
-    } else if (on && !watch_ && !busy_ && !options_.device.empty()) {
+    } else if (on && !watch_ && (!busy_ || unasked_) && !options_.device.empty()) {
       watch_ = std::make_shared<CameraWatch>(
           options_.device, [this] { return known_settings(); }, [this](const Event& event) { hear(event); },
           [this](const std::string& key, const std::string& word) { keep_setting(key, word); });

@@ -6,6 +6,7 @@
 #include <set>
 #include <utility>
 
+#include "acquisition/device_uri.h"
 #include "acquisition/operator_log.h"
 #include "acquisition/session_store.h"
 #include "acquisition/sign_off_log.h"
@@ -45,6 +46,12 @@ bool is_of_the_same_scans(const RedMap& map, const std::vector<ScanPose>& poses)
   return mapped == registered;
 }
 
+/// Or the session knows of none.
+bool is_own_device(const SessionStore& store, const std::string& device) {
+  const std::string own = own_device(store).value_or(std::string());
+  return own.empty() || own == absolute_device(device);
+}
+
 bool is_stored(const SessionStore& store, const RedMap& map) {
   const auto differs = differs_from_stored(store, map);
   return differs && *differs && (*differs)->empty();
@@ -82,6 +89,8 @@ void LiveSession::read_folder() {
     end(std::unexpected(!scans ? scans.error() : poses.error()));
     return;
   }
+  // How the tablet lies now says the drive of the last scan.
+  const std::map<int, Placement> drives = session_drives(*store).value_or(std::map<int, Placement>());
   const Result<std::optional<PinSet>> stored_pins = session_pins(*store);
   const std::optional<PinSet> pins = stored_pins && *stored_pins ? *stored_pins : options_.pins;
   {
@@ -94,6 +103,7 @@ void LiveSession::read_folder() {
     }
     show_scans(*store, *scans);
     follow(*poses);
+    state_.is_driven = !drives.empty() && is_own_device(*store, options_.device);
     state_.record = tablet_record_of(*store);
     if (Result<SettingWords> kept = kept_settings(*store, options_.device)) {
       settings_ = std::move(*kept);
@@ -112,8 +122,6 @@ void LiveSession::read_folder() {
     state_.verdict_kept = is_kept;
   }
   ScanSet set;
-  // How the tablet lies now says the drive of the last scan.
-  const std::map<int, Placement> drives = session_drives(*store).value_or(std::map<int, Placement>());
   for (const StoredScan& stored : *scans) {
     if (job_->cancelled() || stored.damaged) {
       continue;
@@ -161,11 +169,7 @@ void LiveSession::show_scans(const SessionStore& store, const std::vector<Stored
     scan.remark = stored.remark;
   }
   show_faults(store, scans);
-  if (const Result<OperatorLog> log = read_operator_log(store)) {
-    for (LiveScan& scan : state_.scans) {
-      scan.hinted = log->word.hints.contains(scan.id);
-    }
-  }
+  show_hints(store);
 }
 
 void LiveSession::show_verdict(const SessionStore& store) {
@@ -175,12 +179,20 @@ void LiveSession::show_verdict(const SessionStore& store) {
       state_.red_map = std::make_shared<const RedMap>(std::move(*map));
     }
   }
+  show_checklist(store);
+  show_sign_offs(store);
+}
+
+void LiveSession::show_checklist(const SessionStore& store) {
   if (const auto text = store.load_document("checklist"); text && *text) {
     if (auto list = parse_checklist(**text, "checklist of the session")) {
       const std::scoped_lock lock(mutex_);
       state_.checklist = std::move(*list);
     }
   }
+}
+
+void LiveSession::show_sign_offs(const SessionStore& store) {
   const auto signed_offs = read_sign_offs(store, *job_);
   if (signed_offs && !signed_offs->sign_offs.empty()) {
     const std::scoped_lock lock(mutex_);
@@ -229,42 +241,61 @@ void LiveSession::verdict_after_break(const SessionStore& store) {
   const auto poses = standing_poses(store);
   const std::shared_ptr<const RedMap> map = state().red_map;
   const bool kept = poses && map && is_of_the_same_scans(*map, *poses) && is_stored(store, *map);
+  if (kept) {
+    show_checklist(store);
+  }
+  show_sign_offs(store);
   const std::scoped_lock lock(mutex_);
   state_.verdict_kept = kept;
 }
 
-std::shared_ptr<JobContext> LiveSession::begin_unasked() {
-  auto job = std::make_shared<JobContext>(
-      [this](std::string_view stage, double fraction) { progress(stage, fraction); });
+bool LiveSession::begins_afterwards() {
   {
     const std::scoped_lock lock(mutex_);
-    // stop() may have come before there was a job of this to cancel.
-    if (job_->cancelled() || !later_.empty() || scan_later_ || next_) {
+    if (closing_) {
+      return false;
+    }
+    if (job_->cancelled()) {
+      job_ = new_job();
+    }
+    state_.phase = LivePhase::kReading;
+    state_.reads_folder = true;
+  }
+  changed();
+  return true;
+}
+
+std::shared_ptr<JobContext> LiveSession::begin_unasked() {
+  auto job = new_job();
+  {
+    const std::scoped_lock lock(mutex_);
+    if (closing_ || !later_.empty() || scan_later_ || next_) {
       return nullptr;
     }
     unasked_ = job;
+    state_.reads_folder = false;
     state_.phase = LivePhase::kStill;  // what is asked for begins at once
   }
   changed();
   return job;
 }
 
-void LiveSession::look_for_package() {
-  const std::filesystem::path usual = usual_package_of(std::filesystem::absolute(options_.session));
+void LiveSession::look_for_package(const std::filesystem::path& at) {
+  const std::filesystem::path package =
+      at.empty() ? usual_package_of(std::filesystem::absolute(options_.session)) : at;
   std::error_code none;
-  if (!std::filesystem::exists(usual, none) || !state().signed_off) {
+  if (!std::filesystem::exists(package, none) || !state().signed_off) {
     return;
   }
   const auto job = begin_unasked();
   if (!job) {
     return;
   }
-  const Result<bool> packed = is_packed(options_.session, usual, *job);
+  const Result<bool> packed = is_packed(options_.session, package, *job);
   const std::scoped_lock lock(mutex_);
-  if (packed && *packed) {
-    state_.package = usual;
+  if (packed && *packed && !record_later_) {  // else it is described otherwise since
+    state_.package = package;
   }
-  unasked_.reset();
 }
 
 void LiveSession::rebuild_model(const SessionStore& store, const ScanSet& set,
@@ -278,8 +309,6 @@ void LiveSession::rebuild_model(const SessionStore& store, const ScanSet& set,
     if (Result<ColouredPoints> red = red_points_again(set, poses, *now.mesh, *job)) {
       show_model(now.mesh, std::make_shared<const ColouredPoints>(std::move(*red)), now.tablet_from_model);
     }
-    const std::scoped_lock lock(mutex_);
-    unasked_.reset();
     return;
   }
   const Result<PlannedAgain> planned = plan_again(set, poses, *job);
@@ -295,7 +324,6 @@ void LiveSession::rebuild_model(const SessionStore& store, const ScanSet& set,
     state_.red_map = std::make_shared<const RedMap>(planned->results.red_map);
     state_.verdict_kept = kept;
   }
-  unasked_.reset();
 }
 
 }  // namespace dubsar

@@ -19,10 +19,11 @@ void LiveSession::describe(const TabletRecord& record) {
     }
     if (busy_) {  // no engine is wanted for it: that would open the device
       record_later_ = record;
+      state_.record_kept = false;  // not yet
       return;
     }
   }
-  launch([this, record] { keep_record(record); }, true);
+  launch([this, record] { keep_record(record); }, Job::kMendsNothing);
 }
 
 void LiveSession::keep_record(const TabletRecord& record) {

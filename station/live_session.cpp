@@ -5,11 +5,22 @@
 #include <algorithm>
 #include <utility>
 
+#include "acquisition/rig_scan.h"
 #include "station/device_patience.h"
 #include "station/packing.h"
 #include "station/signing.h"
 
 namespace dubsar {
+
+namespace {
+
+/// Nothing but motors is told of a view before it is scanned.
+bool tells_of_motors(const Event& event) {
+  const auto* waits = std::get_if<WaitsForOperator>(&event);
+  return std::holds_alternative<NextPlacement>(event) || (waits != nullptr && waits->next);
+}
+
+}  // namespace
 
 LiveSession::LiveSession(Options options, std::function<void()> on_change)
     : options_(std::move(options)), on_change_(std::move(on_change)) {}
@@ -20,20 +31,17 @@ LiveSession::~LiveSession() {
     if (engine_) {
       engine_->post(KeepHalfScan{});
     }
+    closing_ = true;
+    cancel();
   }
-  stop();
   std::optional<DevicePatience> patience;
   if (options_.given_up) {
     patience.emplace([] { return true; }, nullptr, options_.given_up);
   }
-  {
-    const std::scoped_lock lock(mutex_);
-    later_.clear();
-    scan_later_ = false;
-  }
   if (worker_.joinable()) {
     worker_.join();
   }
+  keep_words();
   keeps_refused_record();  // what refused it may have let go of the session
   watch_.reset();
 }
@@ -42,6 +50,9 @@ LiveState LiveSession::state() const {
   const std::scoped_lock lock(mutex_);
   LiveState out = state_;
   const auto silent = device_told_ ? silent_device(*device_told_, kSilentAfter) : std::nullopt;
+  if (out.care && out.care->last) {  // the window may stand open over night
+    out.care->age_days = days_since(out.care->last->when);
+  }
   out.silence = silent ? std::optional(silence_of(*silent)) : std::nullopt;
   return out;
 }
@@ -77,6 +88,7 @@ void LiveSession::set_device(std::string uri) {
     if (options_.device != uri) {
       settings_.reset();  // those of this one are read where they are wanted
       state_.panel.reset();
+      state_.is_driven = false;
       state_.error.reset();  // the other scanner's
     }
     options_.device = std::move(uri);
@@ -91,77 +103,41 @@ void LiveSession::changed() const {
   }
 }
 
-void LiveSession::hurry() {
-  if (unasked_) {
-    unasked_->cancel();
-  }
+bool LiveSession::is_occupied() const {
+  const std::scoped_lock lock(mutex_);
+  return busy_ && !unasked_;
 }
 
-void LiveSession::launch(std::function<void()> job, bool error_stays) {
+std::shared_ptr<JobContext> LiveSession::new_job() {
+  return std::make_shared<JobContext>(
+      [this](std::string_view stage, double fraction) { progress(stage, fraction); });
+}
+
+void LiveSession::launch(std::function<void()> job, Job kind) {
   {
     const std::scoped_lock lock(mutex_);
     if (unasked_ && !next_) {
+      take_word(kind);
       next_ = std::move(job);
       hurry();
       return;
     }
-  }
-  if (busy_.exchange(true)) {
-    return;
+    if (busy_.exchange(true)) {
+      state_.notice = kNotBegun;
+      return;
+    }
+    job_ = new_job();
+    take_word(kind);
+    state_.reads_folder = kind == Job::kReads;
+    device_told_.reset();
   }
   if (worker_.joinable()) {
     worker_.join();
   }
-  {
-    const std::scoped_lock lock(mutex_);
-    job_ = std::make_shared<JobContext>(
-        [this](std::string_view stage, double fraction) { progress(stage, fraction); });
-    if (!error_stays) {
-      state_.error.reset();
-    }
-    state_.halted = false;
-    device_told_.reset();
-  }
   worker_ = std::thread([this, first = std::move(job)] {
     take_device();
     first();
-    for (;;) {  // what was asked for meanwhile
-      std::vector<OperatorCommand> commands;
-      bool waits = true;
-      std::function<void()> next;
-      std::optional<TabletRecord> record;
-      {
-        const std::scoped_lock lock(mutex_);
-        next = std::exchange(next_, nullptr);
-        record = std::exchange(record_later_, std::nullopt);
-      }
-      if (record) {  // also when nothing else is wanted any more
-        keep_record(*record);
-      }
-      if (next && !job_->cancelled()) {
-        next();
-        continue;
-      }
-      {
-        const std::scoped_lock lock(mutex_);
-        commands.assign(later_.begin(), later_.end());
-        later_.clear();
-        waits = !std::exchange(scan_later_, false);
-        if (record_later_) {
-          scan_later_ = !waits;
-          later_.assign(commands.begin(), commands.end());
-          continue;
-        }
-        if ((commands.empty() && waits) || job_->cancelled()) {
-          state_.phase = LivePhase::kStill;
-          state_.stage.clear();
-          device_told_.reset();
-          busy_ = false;
-          break;
-        }
-      }
-      run_engine(std::move(commands), waits);
-    }
+    do_what_was_asked();
     changed();
   });
 }
@@ -174,10 +150,12 @@ void LiveSession::end(const Status& status) {
 }
 
 void LiveSession::read() {
-  launch([this] {
-    read_folder();
-    look_for_package();
-  });
+  launch(
+      [this] {
+        read_folder();
+        look_for_package({});
+      },
+      Job::kReads);
 }
 
 void LiveSession::scan_now() {
@@ -190,6 +168,7 @@ void LiveSession::scan_now() {
       return;
     }
     if (busy_) {
+      take_later_word();
       scan_later_ = true;
       hurry();
       return;
@@ -217,8 +196,7 @@ void LiveSession::finish() {
   judge();
 }
 
-void LiveSession::stop() {
-  const std::scoped_lock lock(mutex_);
+void LiveSession::cancel() {
   if (job_) {
     job_->cancel();
   }
@@ -228,12 +206,27 @@ void LiveSession::stop() {
   hurry();
 }
 
+bool LiveSession::is_away_from_device() const {
+  return !busy_ || unasked_ || state_.reads_folder;
+}
+
+void LiveSession::stop() {
+  const std::scoped_lock lock(mutex_);
+  if (is_away_from_device()) {
+    drop_asked();
+    hurry();
+    return;
+  }
+  cancel();
+}
+
 void LiveSession::halt() {
   const std::scoped_lock lock(mutex_);
   scan_later_ = false;
   halted_ = looks_;
-  state_.halted = busy_;
-  if (busy_ || watch_) {
+  const bool is_away = is_away_from_device();
+  state_.halted = !is_away;
+  if (!is_away || watch_) {
     tell_device();
   }
   if (engine_) {
@@ -243,29 +236,11 @@ void LiveSession::halt() {
   if (watch_) {
     watch_->stop();
   }
-  if (job_) {  // an artefact that is measured, perhaps
+  if (is_away) {  // and nothing begins by itself
+    drop_asked();
+  } else {  // an artefact that is measured, perhaps
     job_->halt();
   }
-}
-
-void LiveSession::ask(OperatorCommand command) {
-  {
-    const std::scoped_lock lock(mutex_);
-    if (const auto* hint = std::get_if<HintScan>(&command)) {
-      scan_of(hint->id).hinted = true;
-    } else if (const auto* withdraw = std::get_if<WithdrawHint>(&command)) {
-      scan_of(withdraw->id).hinted = false;
-    }
-    if (engine_ && engine_->post(command)) {
-      return;
-    }
-    if (busy_) {
-      later_.push_back(std::move(command));
-      hurry();
-      return;
-    }
-  }
-  launch([this, command = std::move(command)] { run_engine({command}, true); });
 }
 
 void LiveSession::sign(const SignOff& wanted) {
@@ -328,8 +303,15 @@ void LiveSession::run_engine(std::vector<OperatorCommand> first, bool first_scan
   JobContext* job = nullptr;
   std::shared_ptr<Engine> engine;
   std::string uri;
+  bool is_described = false;
+  std::filesystem::path package;
   {
     const std::scoped_lock lock(mutex_);
+    if (job_->cancelled() || state_.halted) {  // between the word and its run
+      later_.insert(later_.begin(), first.begin(), first.end());
+      drop_asked();
+      return;
+    }
     options.device = uri = options_.device;
     options.session = options_.session;
     options.pins = options_.pins;
@@ -340,20 +322,26 @@ void LiveSession::run_engine(std::vector<OperatorCommand> first, bool first_scan
     options.first_scan_waits = first_scan_waits;
     options.show_model = true;
     options.first_commands = std::move(first);
-    if (!(state_.record == TabletRecord{})) {
+    is_described = !(state_.record == TabletRecord{});
+    if (is_described) {
       options.first_commands.insert(options.first_commands.begin(), DescribeTablet{state_.record});
     }
-    engine = std::make_shared<Engine>(std::move(options), [this](const Event& event) { hear(event); });
+    engine = std::make_shared<Engine>(std::move(options), [this](const Event& event) {
+      if (tells_of_motors(event)) {
+        const std::scoped_lock told(mutex_);
+        state_.is_driven = true;
+      }
+      hear(event);
+    });
     engine_ = engine;
     job = job_.get();
     state_.phase = LivePhase::kOpening;
-    if (!job->cancelled()) {  // an emergency stop was of the run before
-      device_told_.reset();
-    }
+    state_.reads_folder = false;
+    device_told_.reset();  // of the run before
     finish_asked_ = false;
     state_.next.reset();
     state_.signed_off = false;
-    state_.package.clear();
+    package = std::exchange(state_.package, {});
     state_.checklist.reset();
   }
   changed();
@@ -365,8 +353,12 @@ void LiveSession::run_engine(std::vector<OperatorCommand> first, bool first_scan
   const auto scans = store ? store->scans() : std::unexpected(store.error());
   {
     const std::scoped_lock lock(mutex_);
+    if (job_->cancelled() || state_.halted) {
+      drop_asked();
+    }
     if (scans) {
       show_faults(*store, *scans);
+      show_hints(*store);
     }
     if (kept) {
       settings_ = std::move(*kept);
@@ -376,8 +368,10 @@ void LiveSession::run_engine(std::vector<OperatorCommand> first, bool first_scan
     // A run that has failed may not have come to it.
     const std::optional<TabletRecord> told = std::exchange(record_told_, std::nullopt);
     record_later_ = record_later_ || result ? record_later_ : told;
+    if (result && (is_described || told)) {  // it may have been refused
+      state_.record_kept = store && tablet_record_of(*store) == state_.record;
+    }
     if (result) {
-      state_.record_kept = true;
       follow(result->poses);
       state_.red_map = std::make_shared<const RedMap>(result->red_map);
       state_.verdict_kept = true;
@@ -390,8 +384,9 @@ void LiveSession::run_engine(std::vector<OperatorCommand> first, bool first_scan
   }
   if (!result) {
     end(std::unexpected(result.error()));
-    if (store) {
+    if (store && begins_afterwards()) {
       verdict_after_break(*store);
+      look_for_package(package);
     }
   }
   changed();

@@ -9,6 +9,7 @@
 #include <functional>
 #include <memory>
 #include <mutex>
+#include <set>
 #include <string>
 #include <thread>
 
@@ -20,6 +21,10 @@
 #include "station/scan_set.h"
 
 namespace dubsar {
+
+/// Of a job that was asked for and is dropped, since what went before was stopped or still goes on.
+inline constexpr const char* kNotBegun =
+    "what was asked for meanwhile was not begun; ask for it again once nothing else is under way";
 
 /// One session for a skin that must never wait: the engine and every other long job run on a thread of their
 /// own, one at a time, and what they say is kept as a LiveState. Whatever is asked for while none of them
@@ -64,9 +69,12 @@ class LiveSession {
   /// Takes no more scans. Where no run is under way the verdict of what is stored is worked out and kept, as
   /// `dubsar plan` does.
   void finish();
-  void stop();  ///< cancels what is under way
-  /// The emergency stop, whatever is under way: lasers off, nothing moves. What was scanned is kept. The
-  /// camera is looked through again once watch_camera(false) was said.
+  /// Cancels what is under way; of a folder that is read, only what was asked for meanwhile: a signature that
+  /// was read by half would be none.
+  void stop();
+  /// The emergency stop, whatever is under way: lasers off, nothing moves, and no run begins by what was
+  /// asked for before the next word. What was scanned is kept. The camera is looked through again once
+  /// watch_camera(false) was said.
   void halt();
   /// Asks the engine, which is started for it where it does not run.
   void ask(OperatorCommand command);
@@ -86,10 +94,28 @@ class LiveSession {
   void verify(const VerifyRequest& request);
   void calibrate(const CalibrateRequest& request);
   [[nodiscard]] bool busy() const { return busy_; }
+  /// Likewise, with something that somebody waits for: whatever is asked for meanwhile has to wait.
+  [[nodiscard]] bool is_occupied() const;
 
  private:
-  /// `error_stays`: of a job that mends nothing, what ended the one before is still to be read.
-  void launch(std::function<void()> job, bool error_stays = false);
+  enum class Job {
+    kPlain,
+    kReads,        ///< what the folder holds
+    kMendsNothing  ///< what ended the job before is still to be read
+  };
+  void launch(std::function<void()> job, Job kind = Job::kPlain);
+  [[nodiscard]] std::shared_ptr<JobContext> new_job();
+  void do_what_was_asked();  ///< meanwhile; on the worker
+  void drop_asked();         ///< under the mutex, and says so
+  void keep_words();         ///< of scans that no run takes any more: into the session
+  void take_word(Job kind);  ///< under the mutex: what ended the job before is known
+  void take_later_word();    ///< likewise, of a word that goes before work that nobody waits for
+  void mark_hint(const OperatorCommand& command);  ///< under the mutex
+  void mark_hints();                               ///< under the mutex: those that are kept or waited for
+  void show_hints(const SessionStore& store);      ///< under the mutex
+  void cancel();                                   ///< under the mutex
+  /// Under the mutex: no job has the device, or may yet come to it without another word.
+  [[nodiscard]] bool is_away_from_device() const;
   void hurry();        ///< under the mutex: something was asked for, what nobody waits for ends
   void tell_device();  ///< under the mutex: from now on the device is waited for
   void take_device();  ///< of a job that begins: from whoever looks through its camera
@@ -103,11 +129,16 @@ class LiveSession {
   void read_folder();
   void take_own_device(const SessionStore& store);
   void look_for_broken_off();
-  void look_for_package();  ///< of the signed session, in its usual place
-  /// Of a run that kept none: whether the session holds what was shown last.
+  /// Of the signed session, where it was shown last; empty: in its usual place.
+  void look_for_package(const std::filesystem::path& at);
+  /// After a run that kept no verdict: what follows is not stopped with it. False where all ends.
+  [[nodiscard]] bool begins_afterwards();
+  /// Of such a run: whether the session holds what was shown last, and its signature.
   void verdict_after_break(const SessionStore& store);
   void show_scans(const SessionStore& store, const std::vector<StoredScan>& scans);  ///< under the mutex
   void show_verdict(const SessionStore& store);                                      ///< and who signed it
+  void show_checklist(const SessionStore& store);
+  void show_sign_offs(const SessionStore& store);
   /// What of the session is lost, and of its scans damaged; under the mutex. Told on every opening.
   void show_faults(const SessionStore& store, const std::vector<StoredScan>& scans);
   void show_signature(const CheckedSignOff& latest);  ///< under the mutex
@@ -140,13 +171,15 @@ class LiveSession {
   std::optional<std::chrono::steady_clock::time_point> unseen_since_;  ///< of profiles
   std::shared_ptr<Engine> engine_;                                     ///< while it runs
   std::shared_ptr<JobContext> job_;
-  std::shared_ptr<JobContext> unasked_;  ///< work that nobody waits for, while there is some
+  std::shared_ptr<JobContext> unasked_;  ///< work that nobody waits for, until the worker goes on
   std::function<void()> next_;           ///< a job that was asked for meanwhile
   std::deque<OperatorCommand> later_;    ///< asked for while a job ran that takes none
-  bool scan_later_ = false;              ///< likewise
-  bool finish_asked_ = false;            ///< of the run under way
-  bool looks_ = false;                   ///< somebody, through the camera
-  bool halted_ = false;                  ///< until they look no more: looking lights a rig's laser
+  std::set<int> hints_kept_;             ///< scans that the session holds a hint of
+  bool closing_ = false;
+  bool scan_later_ = false;    ///< likewise
+  bool finish_asked_ = false;  ///< of the run under way
+  bool looks_ = false;         ///< somebody, through the camera
+  bool halted_ = false;        ///< until they look no more: looking lights a rig's laser
   std::optional<std::chrono::steady_clock::time_point> device_told_;  ///< to stop, or to be given back
   std::optional<TabletRecord> record_later_;                          ///< likewise
   std::optional<TabletRecord> record_told_;  ///< the last that the run under way was told of

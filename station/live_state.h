@@ -77,7 +77,8 @@ struct GrowingRows {
 /// changed.
 struct LiveState {
   LivePhase phase = LivePhase::kStill;
-  std::string stage;  ///< of a long job, in words
+  bool reads_folder = false;  ///< of kReading: what is stored, by no run; it is read to its end
+  std::string stage;          ///< of a long job, in words
   double fraction = 0;
   std::vector<LiveScan> scans;  ///< by id
   std::shared_ptr<const RedMap> red_map;
@@ -107,7 +108,10 @@ struct LiveState {
   bool record_kept = true;
   std::shared_ptr<const PinSet> pins;        ///< with the operator's labels; nothing while none are known
   std::shared_ptr<const DevicePanel> panel;  ///< of the device that was opened last
-  std::optional<RigCare> care;               ///< of the chosen device, where it is a rig
+  /// Motors go to what the red map would do next, as far as it is known of the chosen device. A rig that the
+  /// red map knows may have none that can be told where to go.
+  bool is_driven = false;
+  std::optional<RigCare> care;                          ///< of the chosen device, where it is a rig
   std::shared_ptr<const VerifyOutcome> verification;    ///< the last of this window
   std::shared_ptr<const CalibrateOutcome> calibration;  ///< likewise
   bool exists = false;                                  ///< the folder holds a session

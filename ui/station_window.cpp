@@ -19,6 +19,7 @@
 
 #include "core/log.h"
 #include "core/yielding_loops.h"
+#include "station/device_patience.h"
 #include "station/picture_file.h"
 #include "ui/gl/frame_target.h"
 #include "ui/gl/gl_window.h"
@@ -157,6 +158,19 @@ class StationWindow {
                   given_up_});
   }
 
+  /// A driver that is still looked for devices keeps the screens: it too is waited for so long and no longer.
+  ~StationWindow() {
+    std::optional<DevicePatience> patience;
+    if (given_up_) {
+      patience.emplace([] { return true; }, nullptr, given_up_);
+    }
+    viewer_.reset();
+    operator_.reset();
+    session_.reset();
+  }
+  StationWindow(const StationWindow&) = delete;
+  StationWindow& operator=(const StationWindow&) = delete;
+
   Result<int> run(const JobContext& job) {
     int settle = kFramesAfterEvent;
     bool moving = false;
@@ -214,6 +228,7 @@ class StationWindow {
  private:
   void open_session(const LiveSession::Options& options) {
     operator_.reset();
+    viewing_->stop();  // what is still worked out there is of the tablet before
     session_ = std::make_unique<LiveSession>(options, wake_window);
     session_->read();
     operator_ = std::make_unique<OperatorScreen>(*session_);

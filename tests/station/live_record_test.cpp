@@ -74,5 +74,19 @@ TEST_F(LiveRecord, ThatWasRefusedIsKeptByTheNextRun) {
   EXPECT_EQ(kept_number(), "BM 15285");
 }
 
+/// The engine tells a refusal of it, and no more.
+TEST_F(LiveRecord, ThatARunHasRefusedIsNotSaidToBeKept) {
+  Followed followed(kSmallTablet, session());
+  followed.session.scan_now();
+  ASSERT_TRUE(followed.wait_for_phase(LivePhase::kWaiting));
+  TabletRecord record;
+  record.museum_number = std::string(1001, '1');
+  followed.session.describe(record);
+  followed.session.finish();
+  ASSERT_TRUE(followed.wait_for_rest());
+  EXPECT_EQ(kept_number(), "");
+  EXPECT_FALSE(followed.session.state().record_kept);
+}
+
 }  // namespace
 }  // namespace dubsar

@@ -34,6 +34,7 @@ TEST(LiveSession, WaitsForEveryTurnByHandAndGoesOnWhenAsked) {
   const LiveState waiting = followed.session.state();
   ASSERT_TRUE(waiting.next && waiting.next->placement);
   EXPECT_TRUE(waiting.next->placement->hand_turn.has_value());
+  EXPECT_TRUE(waiting.is_driven);
   EXPECT_GE(waiting.scans.size(), 1U);
   EXPECT_TRUE(waiting.scans.front().grid && waiting.scans.front().picture);
   EXPECT_TRUE(waiting.mesh && waiting.red);

@@ -84,5 +84,19 @@ TEST(LiveUndriven, AConclusiveTabletIsReadyToBeSignedAndMayBeScannedOn) {
   EXPECT_TRUE(followed.session.state().verdict_kept);
 }
 
+/// The red map proposes what a hand can do too, in the form that motors would be told.
+TEST(LiveUndriven, OfARigIsNotTakenForDriven) {
+  const test::TemporaryFolder folder;
+  Followed followed(test::unmoved_rig(), folder.path() / "s");
+  ASSERT_TRUE(scan_once(followed));
+  ASSERT_TRUE(followed.wait_until([](const LiveState& s) {
+    return s.phase == LivePhase::kWaiting && s.red_map && !s.red_map->next.empty();
+  }));
+  const LiveState state = followed.session.state();
+  EXPECT_TRUE(state.red_map->next.front().placement) << "it is no rig: it shows nothing";
+  EXPECT_FALSE(state.next);
+  EXPECT_FALSE(state.is_driven);
+}
+
 }  // namespace
 }  // namespace dubsar

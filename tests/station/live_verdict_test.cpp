@@ -120,6 +120,7 @@ TEST_F(LiveVerdict, OfASessionThatWasLeftProposesWhatPlanProposes) {
   ASSERT_TRUE(again.wait_for_rest());
   const LiveState state = again.session.state();
   ASSERT_TRUE(state.red_map);
+  EXPECT_TRUE(state.is_driven);
   JobContext job;
   ScanSetOptions reading;
   reading.access = SessionStore::Access::kReadOnly;

@@ -40,6 +40,7 @@ Placement turned_by_hand() {
 /// A run begins with a scan of how the tablet lies: who obeyed the red map's turn would turn it twice.
 TEST(StatementGoingOn, AMotorDrivenSessionGoesOnWithTheTabletAsItLies) {
   LiveState state = left_in_the_middle(turned_by_hand());
+  state.is_driven = true;
   Statement s = statement_of(state, true, Language::kEnglish);
   EXPECT_EQ(s.headline, "12.0 mm² are still red: scan on");
   EXPECT_EQ(s.detail, "Leave the tablet as it lies and go on: one scan shows how it lies.");
@@ -53,6 +54,26 @@ TEST(StatementGoingOn, AMotorDrivenSessionGoesOnWithTheTabletAsItLies) {
 TEST(StatementGoingOn, WhereNothingDrivesTheScannerTheTabletIsTurnedBefore) {
   const LiveState state = left_in_the_middle(std::nullopt);
   EXPECT_THAT(statement_of(state, true, Language::kEnglish).detail, HasSubstr("Turn the right edge"));
+}
+
+/// Its geometry is known, so the red map knows placements; but nobody can tell it where to go.
+TEST(StatementGoingOn, ARigThatNothingDrivesHasTheTabletTurnedByHand) {
+  LiveState state = left_in_the_middle(turned_by_hand());
+  const std::string english =
+      "Turn the right edge towards the camera, 128°; then turntable to 80°, tilt to 70°";
+  EXPECT_EQ(statement_of(state, true, Language::kEnglish).detail, english + ".");
+  state.phase = LivePhase::kWaiting;
+  Statement s = statement_of(state, true, Language::kEnglish);
+  EXPECT_EQ(s.headline, english);
+  EXPECT_THAT(s.detail, HasSubstr("Then scan"));
+  EXPECT_THAT(statement_of(state, true, Language::kGerman).headline,
+              HasSubstr("Den rechten Rand zur Kamera"));
+  // One whose next view is of the tablet as it lies has nothing to say.
+  auto map = std::make_shared<RedMap>(*state.red_map);
+  map->next.front().say.clear();
+  state.red_map = map;
+  s = statement_of(state, true, Language::kEnglish);
+  EXPECT_EQ(s.headline, "Leave the tablet as it lies, and scan");
 }
 
 /// No scan is taken only to be able to sign.

@@ -40,6 +40,15 @@ TEST(Statement, HandsOffWhileTheScannerWorks) {
   }
 }
 
+/// A signature that was read by half would be none.
+TEST(Statement, AFolderIsReadToItsEndAndARunThatReadsCanBeStopped) {
+  LiveState state;
+  state.phase = LivePhase::kReading;
+  EXPECT_TRUE(statement_of(state, true, Language::kEnglish).may_stop);
+  state.reads_folder = true;
+  EXPECT_FALSE(statement_of(state, true, Language::kEnglish).may_stop);
+}
+
 /// Whatever it was doing, and whatever was pressed.
 TEST(Statement, AScannerThatDoesNotAnswerIsStoppedByHand) {
   for (const LivePhase phase : {LivePhase::kOpening, LivePhase::kScanning, LivePhase::kMeasuring}) {

@@ -229,13 +229,13 @@ void CalibrationDialog::draw_calibrate(UiContext& ui, const LiveState& state) {
 void CalibrationDialog::draw_action(UiContext& ui, const LiveState& state) {
   if (verifying_) {
     if (plain_button(ui, "verify-now", ui.text(Text::kVerifyNow),
-                     !session_.busy() && !verify_.artefact.empty() && !verify_.scan.empty())) {
+                     !session_.is_occupied() && !verify_.artefact.empty() && !verify_.scan.empty())) {
       session_.verify(verify_);
     }
     return;
   }
   const bool room = temperature_.empty() || calibrate_.temperature_c;
-  const bool may = !session_.busy() && !calibrate_.folder.empty() && room;
+  const bool may = !session_.is_occupied() && !calibrate_.folder.empty() && room;
   if (plain_button(ui, "calibrate-now", ui.text(Text::kCalibrateNow), may)) {
     calibrate_.out.clear();
     session_.calibrate(calibrate_);
@@ -290,14 +290,14 @@ void CalibrationDialog::draw(UiContext& ui, const LiveState& state) {
     verifying_ = false;
   }
   ui.target("page-calibrate");
-  const bool refused = !session_.busy() && state.error;
-  const std::string told = session_.busy() ? std::string()
-                           : refused       ? translated(*state.error, ui.preferences.language)
-                                           : translated(state.notice, ui.preferences.language);
+  const bool refused = !session_.is_occupied() && state.error;
+  const std::string told = session_.is_occupied() ? std::string()
+                           : refused              ? translated(*state.error, ui.preferences.language)
+                                                  : translated(state.notice, ui.preferences.language);
   const ImFont* small = ui.fonts.small;
   const float gap = ImGui::GetStyle().ItemSpacing.y;
   const float told_high =
-      session_.busy() ? 2 * (small->FontSize + gap) + 2 * ImGui::GetStyle().FramePadding.y
+      session_.is_occupied() ? 2 * (small->FontSize + gap) + 2 * ImGui::GetStyle().FramePadding.y
       : told.empty()
           ? 0.0F
           : gap +
@@ -321,7 +321,7 @@ void CalibrationDialog::draw(UiContext& ui, const LiveState& state) {
     ImGui::EndChild();
   }
   ImGui::PushFont(ui.fonts.small);
-  if (session_.busy()) {
+  if (session_.is_occupied()) {
     if (!state.stage.empty()) {
       if (plain_button(ui, "stop-calibration", ui.text(Text::kStop))) {
         session_.stop();

@@ -92,7 +92,7 @@ class OperatorScreen {
   void open_package();
   void open_next();
   /// Nothing is under way that the next tablet would end.
-  [[nodiscard]] bool may_leave() const { return !session_.busy() && !state_.scans.empty(); }
+  [[nodiscard]] bool may_leave() const { return !session_.is_occupied() && !state_.scans.empty(); }
 
   LiveSession& session_;
   LiveState state_;

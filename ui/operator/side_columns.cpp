@@ -198,14 +198,14 @@ void OperatorScreen::draw_left(UiContext& ui, ImVec2 size) {
   };
   const bool has_device = !session_.device().empty();
   if (narrow("device", Text::kDevice, has_device ? ButtonKind::kPlain : ButtonKind::kMain,
-             !session_.busy())) {
+             !session_.is_occupied())) {
     devices_.open(session_.device());
   }
   ImGui::SameLine();
   if (narrow("camera", Text::kCamera, ButtonKind::kPlain, has_device)) {
     camera_box_.open();
   }
-  if (narrow("calibration", Text::kCalibration, ButtonKind::kPlain, !session_.busy())) {
+  if (narrow("calibration", Text::kCalibration, ButtonKind::kPlain, !session_.is_occupied())) {
     calibration_.open();
   }
   ImGui::SameLine();

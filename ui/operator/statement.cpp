@@ -116,7 +116,14 @@ bool lacks_verdict(const LiveState& state) {
 
 /// What the red map would do next is for motors, and no run asks for it yet.
 bool is_driven(const LiveState& state) {
-  return state.red_map && !state.red_map->next.empty() && state.red_map->next.front().placement;
+  return state.is_driven && state.red_map && !state.red_map->next.empty() &&
+         state.red_map->next.front().placement;
+}
+
+/// What the red map would do next, in the words that it has for it; empty where it has none.
+std::string by_hand(const LiveState& state, Language language) {
+  const bool any = state.red_map && !state.red_map->next.empty();
+  return any ? capitalised(translated(state.red_map->next.front().say, language)) : std::string();
 }
 
 /// What the hand does, and what the motors do behind it: "turn …; then turntable to …". Either may be empty.
@@ -208,7 +215,8 @@ void say_waiting(Statement& out, const LiveState& state, Wording wording) {
   } else if (is_driven(state)) {  // the step would have come with the waiting: there is none to turn for
     out.headline = text_of(Text::kScanAsItLies, language);
   } else if (state.red_map && !state.red_map->next.empty()) {
-    out.headline = capitalised(translated(state.red_map->next.front().say, language));
+    const std::string turn = by_hand(state, language);
+    out.headline = turn.empty() ? text_of(Text::kScanAsItLies, language) : turn;
     out.detail = text_of(Text::kThenScan, wording);
   } else {
     out.headline = text_of(Text::kScanTheRed, wording);
@@ -278,8 +286,8 @@ void say_still(Statement& out, const LiveState& state, bool has_device, Wording 
     out.detail = broken_off;
     if (is_driven(state)) {  // whatever is next, the run begins with a scan of how the tablet lies
       add_sentence(out.detail, text_of(Text::kFirstAsItLies, language));
-    } else if (state.red_map && !state.red_map->next.empty()) {
-      add_sentence(out.detail, what_is_next(state.red_map->next.front(), language));
+    } else if (const std::string turn = by_hand(state, language); !turn.empty()) {
+      add_sentence(out.detail, turn + ".");
     }
     add_warnings(out, state, language);
   }
@@ -348,7 +356,8 @@ Statement statement_of(const LiveState& state, bool has_device, Wording wording)
                  state.phase != LivePhase::kScanning && state.phase != LivePhase::kSigning &&
                  state.phase != LivePhase::kPacking && has_device &&
                  !(state.phase == LivePhase::kStill && state.signed_off);
-  out.may_stop = state.phase != LivePhase::kStill;
+  out.may_stop =
+      state.phase != LivePhase::kStill && !(state.phase == LivePhase::kReading && state.reads_folder);
   const auto hands_off = [&](Text headline) {
     out.tone = Tone::kHandsOff;
     out.headline = text_of(headline, language);

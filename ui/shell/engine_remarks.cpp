@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright The Dubsar developers
-// What readers remark on the files of others, in other languages; phrase by phrase, as in engine_words.cpp.
+// What readers remark on the files of others, and what else is remarked, in other languages; phrase by
+// phrase, as in engine_words.cpp.
 #include "ui/shell/engine_words.h"
 
 namespace dubsar::ui {
@@ -109,6 +110,9 @@ constexpr EnginePhrase kRemarks[] = {
     {"three scans brought next to nothing of what is red: stop, look at it, or sign with --incomplete REASON",
      "drei Scans haben fast nichts von dem gebracht, was rot ist: aufhören, es ansehen, oder als "
      "unvollständig unterschreiben"},
+    // what the window drops
+    {"what was asked for meanwhile was not begun; ask for it again once nothing else is under way",
+     "was inzwischen verlangt wurde, ist nicht begonnen; noch einmal verlangen, sobald nichts anderes läuft"},
 };
 
 }  // namespace

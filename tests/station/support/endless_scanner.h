@@ -27,4 +27,10 @@ namespace dubsar::test {
   return "endless:" + scans.string();
 }
 
+/// URI of a rig whose geometry is known and that nothing drives (the same plugin): the simulated one.
+[[nodiscard]] inline std::string unmoved_rig() {
+  ::setenv("DUBSAR_DRIVER_PATH", DUBSAR_BINARY_DIR "/lib/dubsar/test_drivers/endless", 1);
+  return "unmoved:?seed=1&size=20x16x8&spacing=0.25&noise=0.02";
+}
+
 }  // namespace dubsar::test
