@@ -31,6 +31,7 @@ FrameLease& FrameLease::operator=(FrameLease&& other) noexcept {
 
 void FrameLease::give_back() noexcept {
   if (device_) {
+    const DriverCall call(driver_->scheme);
     driver_->release_frame(device_.get(), lease_);
     device_.reset();
   }

@@ -26,8 +26,9 @@ Calls& calls() {
   return *kCalls;
 }
 
-/// The calls that this thread stands in.
+/// The calls that this thread stands in, and of those that are known of the one that began last.
 thread_local int calls_of_this_thread = 0;
+thread_local const PendingCall* innermost_of_this_thread = nullptr;
 
 /// exit() from within a driver would end the program with whatever status the driver chose, 0 for instance:
 /// "done, and conclusive". What is stored is whole without the rest of the way out.
@@ -35,8 +36,9 @@ void tell_of_an_exit() {
   if (calls_of_this_thread == 0) {
     return;
   }
-  const std::optional<PendingCall> call = longest_driver_call();
-  const Error ended{ErrorKind::kDevice, "the driver ended the program", call ? call->device : std::string(),
+  const PendingCall* call = innermost_of_this_thread;  // nobody else takes it out of the list
+  const Error ended{ErrorKind::kDevice, "the driver ended the program",
+                    call != nullptr ? call->device : std::string(),
                     "what is stored is whole; update or remove the driver"};
   std::fprintf(stderr, "dubsar: %s\n", ended.line().c_str());
   ::_exit(exit_status(ended.kind));
@@ -44,13 +46,14 @@ void tell_of_an_exit() {
 
 }  // namespace
 
-DriverCall::DriverCall(const std::string& device) noexcept {
+DriverCall::DriverCall(std::string_view device) noexcept : outer_(innermost_of_this_thread) {
   [[maybe_unused]] static const int kWatched = std::atexit(tell_of_an_exit);
   ++calls_of_this_thread;
   try {
     Calls& all = calls();
     const std::scoped_lock lock(all.mutex);
-    place_ = all.pending.insert(all.pending.end(), {device, std::chrono::steady_clock::now()});
+    place_ = all.pending.insert(all.pending.end(), {std::string(device), std::chrono::steady_clock::now()});
+    innermost_of_this_thread = &**place_;
   } catch (const std::bad_alloc&) {  // the call is made all the same
     place_.reset();
   }
@@ -58,6 +61,7 @@ DriverCall::DriverCall(const std::string& device) noexcept {
 
 DriverCall::~DriverCall() {
   --calls_of_this_thread;
+  innermost_of_this_thread = outer_;
   if (place_) {
     Calls& all = calls();
     const std::scoped_lock lock(all.mutex);

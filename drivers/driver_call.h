@@ -6,6 +6,7 @@
 #include <list>
 #include <optional>
 #include <string>
+#include <string_view>
 
 namespace dubsar {
 
@@ -18,16 +19,17 @@ struct PendingCall {
 /// Stands for a call into a driver while it lasts: a driver is foreign code and may never come back, and
 /// whoever waits for it then has to know. On any thread; one that there is no memory for is not known of.
 /// A driver that calls exit() within it, on its thread, ends the program with the status of a device that
-/// failed, and a line.
+/// failed, and a line that names it.
 class DriverCall {
  public:
-  explicit DriverCall(const std::string& device) noexcept;
+  explicit DriverCall(std::string_view device) noexcept;
   ~DriverCall();
   DriverCall(const DriverCall&) = delete;
   DriverCall& operator=(const DriverCall&) = delete;
 
  private:
   std::optional<std::list<PendingCall>::iterator> place_;
+  const PendingCall* outer_;  ///< that the thread stands in around this one, or null
 };
 
 /// Of the calls of all threads the one that began first; of a rig that waits for its camera, the rig's.

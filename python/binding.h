@@ -55,8 +55,6 @@ py::array_t<T> view_of(const T* data, std::vector<py::ssize_t> shape, const py::
 
 /// [4, 4], target_from_source.
 py::array_t<double> matrix_of(const RigidTransform& transform);
-/// Raises UsageError when it is no [4, 4] rigid transform.
-RigidTransform transform_of(const Input<double>& matrix, const std::string& what);
 /// What the file's numbers are (kLengthUnits); raises UsageError for anything else.
 std::optional<double> mm_per_unit_named(const std::optional<std::string>& unit);
 

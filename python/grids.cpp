@@ -16,6 +16,7 @@
 #include "formats/scan_folder.h"
 #include "python/file_text.h"
 #include "python/jobs.h"
+#include "python/masked_input.h"
 
 namespace dubsar::python {
 
@@ -23,7 +24,8 @@ namespace fs = std::filesystem;
 
 namespace {
 
-using MaybeFloats = std::optional<Input<float>>;
+using Floats = MaskedInput<float>;
+using MaybeFloats = std::optional<Floats>;
 
 void check_shape(const py::array& array, int rows, int cols, const char* name) {
   if (array.ndim() != 2 || array.shape(0) != rows || array.shape(1) != cols) {
@@ -32,9 +34,36 @@ void check_shape(const py::array& array, int rows, int cols, const char* name) {
   }
 }
 
-std::vector<float> floats_of(const Input<float>& array, const RangeGrid& grid, const char* name) {
-  check_shape(array, grid.rows, grid.cols, name);
-  return {array.data(), array.data() + array.size()};
+std::vector<float> floats_of(const Floats& array, const RangeGrid& grid, const char* name) {
+  check_shape(array.values, grid.rows, grid.cols, name);
+  return {array.values.data(), array.values.data() + array.values.size()};
+}
+
+/// What lies behind a mask is no sample.
+template <class T>
+void take_out_masked(const MaskedInput<T>& array, const char* name, RangeGrid& grid) {
+  if (const std::optional<Input<bool>> mask = array.mask(name)) {
+    for (std::size_t i = 0; i < grid.valid.size(); ++i) {
+      grid.valid[i] = mask->data()[i] ? 0 : grid.valid[i];
+    }
+  }
+}
+
+/// What the samples have beside their places: a sample that stands cannot be without it.
+std::vector<float> more_of(const Floats& array, const RangeGrid& grid, const char* name) {
+  std::vector<float> values = floats_of(array, grid, name);
+  if (const std::optional<Input<bool>> mask = array.mask(name)) {
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      if (mask->data()[i] && grid.valid[i] != 0) {
+        raise({ErrorKind::kUsage,
+               std::string(name) + " is masked where the grid has a sample",
+               {},
+               "fill it, or give valid= without these samples"});
+      }
+      values[i] = mask->data()[i] ? 0 : values[i];
+    }
+  }
+  return values;
 }
 
 void check_spacing(double spacing_mm) {
@@ -43,25 +72,29 @@ void check_spacing(double spacing_mm) {
   }
 }
 
-GridPointer make_grid(const Input<float>& x, const Input<float>& y, const Input<float>& z,
-                      const std::optional<Input<bool>>& valid, const MaybeFloats& intensity,
+GridPointer make_grid(const Floats& x, const Floats& y, const Floats& z,
+                      const std::optional<MaskedInput<bool>>& valid, const MaybeFloats& intensity,
                       const MaybeFloats& confidence, double spacing_mm, const py::str& source) {
   constexpr py::ssize_t kMostSamples = 1 << 30;
-  if (x.ndim() != 2 || x.size() == 0 || x.size() > kMostSamples) {
+  if (x.values.ndim() != 2 || x.values.size() == 0 || x.values.size() > kMostSamples) {
     raise({ErrorKind::kUsage, "x is no grid of rows x cols samples", {}, "give a two-dimensional array"});
   }
   check_spacing(spacing_mm);
   auto grid = std::make_shared<RangeGrid>();
-  grid->rows = static_cast<int>(x.shape(0));
-  grid->cols = static_cast<int>(x.shape(1));
+  grid->rows = static_cast<int>(x.values.shape(0));
+  grid->cols = static_cast<int>(x.values.shape(1));
   grid->x = floats_of(x, *grid, "x");
   grid->y = floats_of(y, *grid, "y");
   grid->z = floats_of(z, *grid, "z");
   grid->valid.assign(grid->x.size(), 1);
   if (valid) {
-    check_shape(*valid, grid->rows, grid->cols, "valid");
-    std::copy_n(valid->data(), grid->valid.size(), grid->valid.begin());
+    check_shape(valid->values, grid->rows, grid->cols, "valid");
+    std::copy_n(valid->values.data(), grid->valid.size(), grid->valid.begin());
+    take_out_masked(*valid, "valid", *grid);
   }
+  take_out_masked(x, "x", *grid);
+  take_out_masked(y, "y", *grid);
+  take_out_masked(z, "z", *grid);
   for (std::size_t i = 0; i < grid->valid.size(); ++i) {
     if (!std::isfinite(grid->x[i]) || !std::isfinite(grid->y[i]) || !std::isfinite(grid->z[i])) {
       grid->valid[i] = 0;
@@ -71,10 +104,10 @@ GridPointer make_grid(const Input<float>& x, const Input<float>& y, const Input<
     }
   }
   if (intensity) {
-    grid->intensity = floats_of(*intensity, *grid, "intensity");
+    grid->intensity = more_of(*intensity, *grid, "intensity");
   }
   if (confidence) {
-    grid->confidence = floats_of(*confidence, *grid, "confidence");
+    grid->confidence = more_of(*confidence, *grid, "confidence");
   }
   grid->spacing_mm = spacing_mm > 0 ? spacing_mm : estimate_spacing_mm(*grid);
   grid->source = bytes_of(source);

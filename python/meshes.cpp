@@ -12,6 +12,7 @@
 #include "formats/mesh_io.h"
 #include "formats/place_precision.h"
 #include "python/jobs.h"
+#include "python/masked_input.h"
 #include "station/mesh_json.h"
 #include "triangulation/mesh_check.h"
 
@@ -48,6 +49,7 @@ std::vector<Eigen::Vector3f> vectors_of(const Input<float>& array) {
 
 /// numpy would cut 0.7 to 0, and take True for 1.
 Input<std::int64_t> whole_numbers(const py::object& given) {
+  check_unmasked(given, "faces");
   const auto faces = py::array::ensure(given);
   const char kind = faces ? faces.dtype().kind() : '?';
   if (!faces || (kind != 'i' && kind != 'u' && faces.size() > 0)) {
@@ -57,9 +59,16 @@ Input<std::int64_t> whole_numbers(const py::object& given) {
   return Input<std::int64_t>(faces);
 }
 
-MeshPointer make_mesh(const Input<float>& vertices, const py::object& given_faces,
-                      const std::optional<Input<float>>& normals,
-                      const std::optional<Input<float>>& reliability) {
+/// A mesh has no vertex without a place.
+Input<float> whole(const MaskedInput<float>& array, const char* name) {
+  check_unmasked(array.given, name);
+  return array.values;
+}
+
+MeshPointer make_mesh(const MaskedInput<float>& given_vertices, const py::object& given_faces,
+                      const std::optional<MaskedInput<float>>& given_normals,
+                      const std::optional<MaskedInput<float>>& given_reliability) {
+  const Input<float> vertices = whole(given_vertices, "vertices");
   check_rows(vertices, -1, "vertices");
   const Input<std::int64_t> faces = whole_numbers(given_faces);
   auto mesh = std::make_shared<Mesh>();
@@ -75,15 +84,17 @@ MeshPointer make_mesh(const Input<float>& vertices, const py::object& given_face
       mesh->faces[f][k] = static_cast<std::uint32_t>(vertex);
     }
   }
-  if (normals) {
-    check_rows(*normals, count, "normals");
-    mesh->normals = vectors_of(*normals);
+  if (given_normals) {
+    const Input<float> normals = whole(*given_normals, "normals");
+    check_rows(normals, count, "normals");
+    mesh->normals = vectors_of(normals);
   }
-  if (reliability) {
-    if (reliability->size() != count) {
+  if (given_reliability) {
+    const Input<float> reliability = whole(*given_reliability, "reliability");
+    if (reliability.size() != count) {
       raise({ErrorKind::kUsage, "reliability has the wrong length", {}, "give one number a vertex"});
     }
-    mesh->reliability.assign(reliability->data(), reliability->data() + count);
+    mesh->reliability.assign(reliability.data(), reliability.data() + count);
   }
   check_sound(*mesh);
   value_of(check_precision(*mesh, "the mesh"));
@@ -219,7 +230,9 @@ py::array_t<double> matrix_of(const RigidTransform& transform) {
   return out;
 }
 
-RigidTransform transform_of(const Input<double>& matrix, const std::string& what) {
+RigidTransform transform_of(const MaskedInput<double>& given, const std::string& what) {
+  check_unmasked(given.given, what);
+  const Input<double>& matrix = given.values;
   if (matrix.ndim() == 2 && matrix.shape(0) == 4 && matrix.shape(1) == 4) {
     const auto transform = rigid_from_row_major(std::span<const double, 16>(matrix.data(), 16));
     if (transform) {

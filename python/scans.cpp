@@ -15,6 +15,7 @@
 #include "planning/sparse_flags.h"
 #include "python/file_text.h"
 #include "python/jobs.h"
+#include "python/masked_input.h"
 #include "python/paired_poses.h"
 #include "registration/registrar.h"
 #include "station/outward_faces.h"
@@ -206,7 +207,8 @@ std::optional<PinSet> pins_of(const std::optional<fs::path>& file) {
   return file ? std::optional(value_of(read_pins(*file))) : std::nullopt;
 }
 
-ScanPose make_pose(int id, const Input<double>& model_from_scanner, const py::str& file, double sigma_mm) {
+ScanPose make_pose(int id, const MaskedInput<double>& model_from_scanner, const py::str& file,
+                   double sigma_mm) {
   ScanPose pose;
   pose.id = id;
   pose.file = bytes_of(file);
@@ -265,7 +267,7 @@ void bind_scans(py::module_& module) {
   bind_pose(module);
   module.def(
       "register",
-      [](const Grids& grids, const std::optional<std::vector<std::optional<Input<double>>>>& starts,
+      [](const Grids& grids, const std::optional<std::vector<std::optional<MaskedInput<double>>>>& starts,
          const std::optional<fs::path>& pins_file, const py::object& progress) {
         check_grids(grids);
         const std::optional<PinSet> pins = pins_of(pins_file);

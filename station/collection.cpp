@@ -46,25 +46,6 @@ FileStamp stamp_of(const fs::path& path, std::chrono::milliseconds settled) {
           nanoseconds(status.st_mtim), changed};
 }
 
-/// Every .json file at or below the folder, in name order.
-Result<std::vector<fs::path>> json_files(const fs::path& folder) {
-  std::error_code error;
-  std::vector<fs::path> paths;
-  for (fs::recursive_directory_iterator it(folder, fs::directory_options::skip_permission_denied, error), end;
-       !error && it != end; it.increment(error)) {
-    std::error_code no_file;
-    if (it->path().extension() == ".json" && it->path().filename() != "truth.json" &&
-        it->is_regular_file(no_file)) {
-      paths.push_back(it->path());
-    }
-  }
-  if (error) {
-    return bad_input(folder.string(), "cannot read the folder: " + error.message(), "check the name");
-  }
-  std::ranges::sort(paths);
-  return paths;
-}
-
 /// Sessions and packages hold many a .json that has no list of wedges. Text that is no JSON at all is not
 /// meant: it may have been one.
 bool is_of_another_kind(const fs::path& path) {
@@ -163,11 +144,13 @@ Result<WedgeFile> read_compared_wedges(const fs::path& path) {
 }
 
 Result<Collection> Collection::open(const fs::path& folder, std::chrono::milliseconds settled) {
-  const Result<std::vector<fs::path>> paths = json_files(folder);
-  if (!paths) {
-    return std::unexpected(paths.error());
+  Result<AnalysedFiles> found = analysed_files(folder);
+  if (!found) {
+    return std::unexpected(found.error());
   }
+  const std::vector<fs::path>& paths = found->paths;
   Collection collection;
+  collection.unread_ = std::move(found->unread);
   const fs::path index_path = folder / kSearchIndexName;
   SearchIndex kept = read_index(index_path, &collection.remark_);
   std::map<std::string, IndexedTablet*> known;
@@ -175,10 +158,10 @@ Result<Collection> Collection::open(const fs::path& folder, std::chrono::millise
     known[tablet.name] = &tablet;
   }
   const std::size_t before = kept.tablets.size();
-  std::vector<IndexedTablet> tablets(paths->size());
+  std::vector<IndexedTablet> tablets(paths.size());
   std::vector<std::size_t> to_read;
-  for (std::size_t i = 0; i < paths->size(); ++i) {
-    const fs::path& path = (*paths)[i];
+  for (std::size_t i = 0; i < paths.size(); ++i) {
+    const fs::path& path = paths[i];
     const std::string name = path.lexically_relative(folder).string();
     const FileStamp stamp = stamp_of(path, settled);
     if (const auto it = known.find(name);
@@ -193,7 +176,7 @@ Result<Collection> Collection::open(const fs::path& folder, std::chrono::millise
       to_read.size(),
       [&](std::size_t k) {
         IndexedTablet& tablet = tablets[to_read[k]];
-        tablet = read_tablet((*paths)[to_read[k]], std::string(tablet.name), settled);
+        tablet = read_tablet(paths[to_read[k]], std::string(tablet.name), settled);
       },
       1);
   if (std::ranges::all_of(tablets, [](const IndexedTablet& t) { return !t.complaint.empty(); })) {

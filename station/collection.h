@@ -14,6 +14,7 @@
 #include "core/wedge.h"
 #include "formats/search_index.h"
 #include "formats/wedges_json.h"
+#include "station/analysed_files.h"
 
 namespace dubsar {
 
@@ -39,7 +40,7 @@ inline constexpr std::string_view kNoWedgesJson = "no wedges.json";
 /// (formats/search_index.h): only what has changed since is read again.
 class Collection {
  public:
-  /// Takes in every .json file at or below the folder, but truth.json, and keeps the index; an index that is
+  /// Takes in one file for each tablet (analysed_files.h) and keeps the index; an index that is
   /// damaged, foreign or cannot be written costs time alone and is told in `remark`; in a session or package
   /// none is kept. Errors: kBadInput when
   /// there is no such folder or nothing analysed in it.
@@ -51,6 +52,8 @@ class Collection {
   [[nodiscard]] const std::vector<IndexedTablet>& files() const { return index_.tablets; }
   [[nodiscard]] std::size_t read_anew() const { return read_anew_; }
   [[nodiscard]] const std::string& remark() const { return remark_; }  ///< empty when there is none
+  /// What was left out because it cannot be read.
+  [[nodiscard]] const std::vector<UnreadPlace>& unread() const { return unread_; }
 
   /// The wedges most like this one; the wedge itself, where it is in the collection, is left out.
   [[nodiscard]] std::vector<SimilarWedge> similar_wedges(const Wedge& wedge, std::size_t count) const;
@@ -72,6 +75,7 @@ class Collection {
   std::optional<FeatureSearch> wedges_, tablets_;
   std::size_t read_anew_ = 0;
   std::string remark_;
+  std::vector<UnreadPlace> unread_;
 };
 
 }  // namespace dubsar

@@ -33,8 +33,12 @@ Error silence_of(const std::string& device) {
                       kGivenUpAfter.count())};
 }
 
-DevicePatience::DevicePatience(std::function<bool()> is_told, Say silent, Say given_up)
-    : is_told_(std::move(is_told)), silent_(std::move(silent)), given_up_(std::move(given_up)) {
+DevicePatience::DevicePatience(std::function<bool()> is_told, Say silent, Say given_up,
+                               std::function<void()> answers)
+    : is_told_(std::move(is_told)),
+      silent_(std::move(silent)),
+      given_up_(std::move(given_up)),
+      answers_(std::move(answers)) {
   try {
     watcher_ = std::jthread([this](const std::stop_token& done) { watch(done); });
   } catch (const std::system_error&) {
@@ -51,6 +55,7 @@ DevicePatience::~DevicePatience() {
 
 void DevicePatience::watch(const std::stop_token& done) {
   std::optional<Clock::time_point> told;
+  bool is_silent = false;
   std::unique_lock lock(mutex_);
   while (!wake_.wait_for(lock, done, kPause, [&] { return done.stop_requested(); })) {
     if (done.stop_requested()) {
@@ -62,13 +67,18 @@ void DevicePatience::watch(const std::stop_token& done) {
     if (!told) {
       continue;
     }
-    if (const auto device = silent_ ? silent_device(*told, kSilentAfter) : std::nullopt) {
-      Error error = silence_of(*device);
+    const auto silent = silent_device(*told, kSilentAfter);
+    if (silent && !is_silent && silent_) {
+      Error error = silence_of(*silent);
       error.mend =
           fmt::format("what was stored is safe; the program ends in {} s, or at once by another Ctrl-C",
                       (kGivenUpAfter - kSilentAfter).count());
-      std::exchange(silent_, nullptr)(error);
+      silent_(error);
     }
+    if (!silent && is_silent && answers_) {
+      answers_();
+    }
+    is_silent = silent.has_value();
     if (const auto device = silent_device(*told, kGivenUpAfter)) {
       given_up_(
           {ErrorKind::kDevice, "the device does not answer: the program ends without it", *device,

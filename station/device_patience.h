@@ -36,10 +36,12 @@ class DevicePatience {
  public:
   using Say = std::function<void(const Error&)>;
 
-  /// `is_told`: whether the device was told to stop, which is not taken back. `silent` (it may be empty) is
-  /// called after kSilentAfter, `given_up` after kGivenUpAfter, once each, with what there is to say: it ends
-  /// the program. All three on the thread of this.
-  DevicePatience(std::function<bool()> is_told, Say silent, Say given_up);
+  /// `is_told`: whether the device was told to stop, which is not taken back. `silent` is called after
+  /// kSilentAfter and `given_up` after kGivenUpAfter, with what there is to say: the latter ends the program.
+  /// `answers`: what `silent` told of has come back after all. `silent` and `answers` may be empty. All on
+  /// the thread of this.
+  DevicePatience(std::function<bool()> is_told, Say silent, Say given_up,
+                 std::function<void()> answers = nullptr);
   ~DevicePatience();
   DevicePatience(const DevicePatience&) = delete;
   DevicePatience& operator=(const DevicePatience&) = delete;
@@ -50,6 +52,7 @@ class DevicePatience {
   std::function<bool()> is_told_;
   Say silent_;
   Say given_up_;
+  std::function<void()> answers_;
   std::mutex mutex_;
   std::condition_variable_any wake_;
   std::jthread watcher_;

@@ -18,6 +18,7 @@
 #include "core/thread_priority.h"
 #include "formats/atomic_file.h"
 #include "formats/file_label_reader.h"
+#include "formats/mesh_formats.h"
 #include "formats/mesh_io.h"
 #include "formats/ply_header.h"
 #include "station/analysis.h"
@@ -37,7 +38,7 @@ namespace fs = std::filesystem;
 bool states_its_unit(const fs::path& file) {
   constexpr std::size_t kHeadBytes = std::size_t{64} << 10U;
   const Result<std::string> head = read_file_head(file, kHeadBytes);
-  return file.extension() == ".glb" || (head && states_unit(*head, file.string()));
+  return head && (is_glb(*head) || states_unit(*head, file.string()));
 }
 
 /// What somebody who measures on it has to know of its numbers.

@@ -187,11 +187,33 @@ std::string own_name_of(const StationScan& scan) {
   return name_of(scan.file).starts_with(own + "#") ? std::string() : own;
 }
 
+/// How well a pose fits a scan, the best first. Of those that have its original name: the one whose file is
+/// called so too, or has the number in its session.
+enum class Claim { kPacked, kNameAndMore, kName, kOwnName, kNumber };
+
 /// Whether a path ends in that one, which is relative.
 bool lies_at(const std::filesystem::path& whole, const std::filesystem::path& end) {
   const auto parts = std::distance(end.begin(), end.end());
   return parts > 0 && parts < std::distance(whole.begin(), whole.end()) &&
          std::equal(end.begin(), end.end(), std::prev(whole.end(), parts));
+}
+
+bool lies_where_packed(const StationScan& scan, const ScanPose& pose) {
+  return std::ranges::any_of(pose.packed_as,
+                             [&](const std::string& path) { return lies_at(scan.read_from, path); });
+}
+
+Claim claim_of(const StationScan& scan, const ScanPose& pose) {
+  if (lies_where_packed(scan, pose)) {
+    return Claim::kPacked;
+  }
+  const std::string name = name_of(pose.file);
+  const std::string own = own_name_of(scan);
+  if (!name.empty() && name == name_of(scan.file)) {
+    const bool more = scan.read_from.empty() ? pose.id == scan.id : own.empty() || own == name;
+    return more ? Claim::kNameAndMore : Claim::kName;
+  }
+  return !name.empty() && name == own && pose.packed_as.empty() ? Claim::kOwnName : Claim::kNumber;
 }
 
 }  // namespace
@@ -201,10 +223,7 @@ const ScanPose* pose_in_file(const std::vector<ScanPose>& file, const StationSca
     const auto found = std::ranges::find_if(file, is_it);
     return found == file.end() || std::any_of(std::next(found), file.end(), is_it) ? nullptr : &*found;
   };
-  const ScanPose* found = the_one([&](const ScanPose& pose) {
-    return std::ranges::any_of(pose.packed_as,
-                               [&](const std::string& path) { return lies_at(scan.read_from, path); });
-  });
+  const ScanPose* found = the_one([&](const ScanPose& pose) { return lies_where_packed(scan, pose); });
   if (found == nullptr) {
     found = the_one(
         [&](const ScanPose& pose) { return !pose.file.empty() && name_of(pose.file) == name_of(scan.file); });
@@ -218,6 +237,29 @@ const ScanPose* pose_in_file(const std::vector<ScanPose>& file, const StationSca
     const bool is_named = scan.read_from.empty() && name_of(pose.file) == name_of(scan.file);
     return pose.id == scan.id && (pose.file.empty() || is_named);
   });
+}
+
+const ScanPose* pose_in_file(const std::vector<ScanPose>& file, const StationScan& scan,
+                             const std::vector<StationScan>& scans) {
+  const ScanPose* found = pose_in_file(file, scan);
+  const bool is_of_another = found != nullptr && std::ranges::any_of(scans, [&](const StationScan& other) {
+                               return other.id != scan.id &&
+                                      claim_of(other, *found) <= claim_of(scan, *found) &&
+                                      pose_in_file(file, other) == found;
+                             });
+  return is_of_another ? nullptr : found;
+}
+
+bool may_share_a_pose(const StationScan& scan) {
+  const std::string own = own_name_of(scan);
+  return scan.read_from.empty() || (!own.empty() && own != name_of(scan.file));
+}
+
+std::string lacks_pose(const std::filesystem::path& poses_file, const std::vector<ScanPose>& file,
+                       const StationScan& scan) {
+  const bool none = pose_in_file(file, scan) == nullptr;
+  return poses_file.string() + " has no pose of it" +
+         (none ? "" : ": the one of its name is another scan's, or may be");
 }
 
 std::unexpected<Error> no_pose_of_these(const std::filesystem::path& poses_file) {
@@ -238,13 +280,6 @@ Result<std::vector<ScanPose>> read_either(const std::filesystem::path& poses_fil
   }
   const Result<double> theirs = mm_per_unit_of_scans(scans, *poses);
   return theirs ? read_conf_poses(poses_file, *theirs) : std::unexpected(theirs.error());
-}
-
-/// Whether a pose that has the name of the scan's file has the original name of another scan.
-bool is_of_another(const ScanPose& pose, const StationScan& scan, const std::vector<StationScan>& scans) {
-  const std::string name = name_of(pose.file);
-  return pose.packed_as.empty() && name != name_of(scan.file) &&
-         std::ranges::any_of(scans, [&](const StationScan& other) { return name_of(other.file) == name; });
 }
 
 /// As who stitches them is told.
@@ -292,10 +327,7 @@ Result<std::vector<ScanPose>> poses_from_file(const ScanSet& set, const std::fil
   }
   std::vector<ScanPose> poses;
   for (const StationScan& scan : set.scans) {
-    const ScanPose* found = pose_in_file(*read, scan);
-    if (found != nullptr && !found->file.empty() && is_of_another(*found, scan, set.scans)) {
-      found = nullptr;
-    }
+    const ScanPose* found = pose_in_file(*read, scan, set.scans);
     if (found != nullptr) {
       const bool counts = found->status == PoseStatus::kRegistered;
       const PlacedPrecision precision(*scan.grid);
@@ -308,7 +340,7 @@ Result<std::vector<ScanPose>> poses_from_file(const ScanSet& set, const std::fil
       poses.back().file = scan.file;
       poses.back().packed_as.clear();
     } else {
-      log_warning(scan.file + ": " + poses_file.string() + " has no pose of it");
+      log_warning(scan.file + ": " + lacks_pose(poses_file, *read, scan));
     }
   }
   if (poses.empty()) {

@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "core/job.h"
@@ -34,6 +35,18 @@ struct RegisterOptions {
 /// are of, else by the scan's original name where no other has that, else by the name of its file, else by id
 /// where the pose has no name or, of a scan of a session, that name.
 [[nodiscard]] const ScanPose* pose_in_file(const std::vector<ScanPose>& file, const StationScan& scan);
+
+/// The same beside the other `scans` of the set: no pose is of two. The name of a file stands behind an
+/// original name; of several scans of one original name the pose is that of the one whose file is called so,
+/// of a session's that of the one that has its number, else of none. Of the others number and names are
+/// looked at alone.
+[[nodiscard]] const ScanPose* pose_in_file(const std::vector<ScanPose>& file, const StationScan& scan,
+                                           const std::vector<StationScan>& scans);
+/// Whether the others have to be known for that: not where the scan's file is called as the scan is.
+[[nodiscard]] bool may_share_a_pose(const StationScan& scan);
+/// What to say of one that has none.
+[[nodiscard]] std::string lacks_pose(const std::filesystem::path& poses_file,
+                                     const std::vector<ScanPose>& file, const StationScan& scan);
 
 [[nodiscard]] std::unexpected<Error> no_pose_of_these(const std::filesystem::path& poses_file);
 

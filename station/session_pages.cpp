@@ -19,8 +19,11 @@
 #include "station/kept_surface.h"
 #include "station/picture_file.h"
 #include "station/results.h"
+#include "station/session_pins.h"
 #include "station/session_wedges.h"
+#include "station/station_scan.h"
 #include "station/tablet_label.h"
+#include "triangulation/placed_precision.h"
 
 namespace dubsar {
 
@@ -51,12 +54,6 @@ constexpr const char* kRedSheet = "export/red_map.png";
 constexpr const char* kPoses = "export/poses.json";
 constexpr const char* kBehind = "behind";
 
-bool says_it_in_json(const SessionStore& store, const char* name) {
-  const Result<std::string> text = read_whole_file(store.folder() / name);
-  const Result<JsonDocument> json = text ? JsonDocument::parse(*text, name) : std::unexpected(text.error());
-  return json && json->root().find(kBehind).has_value();
-}
-
 /// Where a file of that name is there.
 Status put_in_its_place(SessionStore& store, const char* name,
                         const std::function<Status(const fs::path&)>& write) {
@@ -68,6 +65,16 @@ Status put_text(SessionStore& store, const char* name, const std::string& text) 
       store, name, [&](const fs::path& file) { return write_file_atomically(file, std::string_view(text)); });
 }
 
+constexpr std::string_view kBeforeMend = "; ";
+
+/// What a file that was taken back says of it; nothing of one that was not, or is not there.
+std::optional<std::string> said_in_json(const SessionStore& store, const char* name) {
+  const Result<std::string> text = read_whole_file(store.folder() / name);
+  const Result<JsonDocument> json = text ? JsonDocument::parse(*text, name) : std::unexpected(text.error());
+  const auto said = json ? json->root().find(kBehind) : std::nullopt;
+  return said ? std::optional(said->text()) : std::nullopt;
+}
+
 /// The pages first, and poses.json last: where it says so, all do.
 Status take_back(SessionStore& store, std::string_view what, std::string_view mend) {
   BehindPage page{page_facts_of(store).title, {}, utc_now(), std::string(what), std::string(mend)};
@@ -77,7 +84,8 @@ Status take_back(SessionStore& store, std::string_view what, std::string_view me
       return put;
     }
   }
-  const std::string why = "the session was changed on " + page.when + ": " + page.what + "; " + page.mend;
+  const std::string why =
+      "the session was changed on " + page.when + ": " + page.what + std::string(kBeforeMend) + page.mend;
   const OrderedJson none = OrderedJson::array();
   if (Status put = put_text(
           store, kRedMap,
@@ -109,6 +117,26 @@ std::vector<std::pair<int, std::string>> places_of(const std::vector<StoredScan>
     out.emplace_back(scan.id, is_placed ? text_of(json_of(pose->model_from_scanner)) : std::string());
   }
   return out;
+}
+
+/// Stored poses as plan_again() has them: a scan that is registered where the model cannot hold it is failed.
+/// Only what pages show as failed is looked at, for its grid has to be read.
+std::vector<ScanPose> as_planned(const SessionStore& store, std::vector<ScanPose> poses,
+                                 const std::vector<ScanPose>& shown) {
+  for (ScanPose& pose : poses) {
+    const auto there = std::ranges::find(shown, pose.id, &ScanPose::id);
+    if (pose.status != PoseStatus::kRegistered || there == shown.end() ||
+        there->status != PoseStatus::kFailed) {
+      continue;
+    }
+    Result<RangeGrid> grid = store.load_grid(pose.id);
+    const Result<std::optional<PinSet>> pins = session_pins(store);
+    if (grid && pins) {
+      const StationScan scan = prepare_scan(pose.id, std::move(*grid), *pins);
+      pose = PlacedPrecision(*scan.grid).judged(std::move(pose));
+    }
+  }
+  return poses;
 }
 
 }  // namespace
@@ -145,6 +173,18 @@ Status pages_follow_record(SessionStore& store, JobContext& job) {
   return {};
 }
 
+std::string mend_of_pages(const SessionStore& store) {
+  for (const char* name : {kPoses, kRedMap}) {
+    const std::string said = said_in_json(store, name).value_or("");
+    if (const std::size_t mend = said.rfind(kBeforeMend); mend != std::string::npos) {
+      return said.substr(mend + kBeforeMend.size());
+    }
+  }
+  return std::ranges::any_of(kPages, [&](const char* page) { return says_it_is_behind(store, page); })
+             ? kFollowAndPlan
+             : kPlan;
+}
+
 bool pages_are_taken_back(const SessionStore& store) {
   int there = 0;
   for (const char* page : kPages) {
@@ -156,7 +196,7 @@ bool pages_are_taken_back(const SessionStore& store) {
     }
   }
   for (const char* name : {kRedMap, kPoses}) {
-    if (is_there(store, name) && !says_it_in_json(store, name)) {
+    if (is_there(store, name) && !said_in_json(store, name)) {
       return false;
     }
   }
@@ -185,7 +225,7 @@ std::string why_pages_are_behind(const SessionStore& store) {
     return scan == scans->end() || scan->dropped;
   };
   if (!lie || !scans || !poses || std::ranges::any_of(*lie, has_none_of) ||
-      places_of(*scans, *lie) != places_of(*scans, *poses)) {
+      places_of(*scans, *lie) != places_of(*scans, as_planned(store, *poses, *lie))) {
     return "export/poses.json is not of the scans and places that the session holds";
   }
   return {};

@@ -38,6 +38,9 @@ Status take_pages_back_once(SessionStore& store, std::string_view what, std::str
 /// Errors: kCancelled, kStorage.
 Status pages_follow_record(SessionStore& store, JobContext& job);
 
+/// What makes pages that were taken back anew, as they say themselves; of others kPlan.
+[[nodiscard]] std::string mend_of_pages(const SessionStore& store);
+
 /// Whether there is a page, and none but those that say that they are behind.
 [[nodiscard]] bool pages_are_taken_back(const SessionStore& store);
 
@@ -48,6 +51,11 @@ Status pages_follow_record(SessionStore& store, JobContext& job);
 /// Red map and checklist into the session's documents, as keep_verdict() of results.h; the latest sign-off is
 /// held against what is kept now, not against what it replaces.
 [[nodiscard]] Status keep_verdict(SessionStore& store, Results& results, const JobContext& job);
+
+/// The checklist alone, of the red map that is kept: where it says something else than the kept one, free
+/// space and the time of the last check aside. True where that is more than who has signed: then pages are
+/// behind. Errors: the store's.
+[[nodiscard]] Result<bool> keep_checklist_anew(SessionStore& store, const Checklist& checklist);
 
 /// As write_deliverables(), but for the mesh.
 [[nodiscard]] Status write_pages(SessionStore& store, const ReportInput& input, const FileLabel& label,

@@ -10,6 +10,7 @@
 #include <optional>
 #include <vector>
 
+#include "acquisition/session_store.h"
 #include "archive/wedge_drawing.h"
 #include "core/log.h"
 #include "core/stage_times.h"
@@ -24,6 +25,8 @@
 #include "station/done_stamp.h"
 #include "station/field_pictures.h"
 #include "station/outward_faces.h"
+#include "station/place_outside.h"
+#include "station/tablet_label.h"
 
 namespace dubsar {
 
@@ -82,6 +85,23 @@ bool is_stampable(const AnalyzeArguments& arguments) {
     return !std::filesystem::exists(path, error) || std::filesystem::is_regular_file(path, error);
   };
   return std::filesystem::is_regular_file(arguments.in, error) && plain(arguments.out);
+}
+
+/// What the session says of its tablet in which the mesh lies: its own mesh tells what its scans tell, and
+/// was stitched before a number was typed. Nothing in no session, or in one that is damaged. Errors:
+/// kStorage.
+Result<std::optional<FileLabel>> label_of_session_of(const std::filesystem::path& mesh) {
+  const std::optional<std::filesystem::path> around = checked_folder_around(mesh);
+  if (!around || !SessionStore::is_session(*around)) {
+    return std::nullopt;
+  }
+  const Result<SessionStore> store = SessionStore::open(*around, SessionStore::Access::kReadOnly);
+  const Result<FileLabel> label =
+      store ? tablet_label(*store) : Result<FileLabel>(std::unexpected(store.error()));
+  if (!label && label.error().kind == ErrorKind::kStorage) {
+    return std::unexpected(label.error());
+  }
+  return label ? std::optional(*label) : std::nullopt;
 }
 
 /// What was found when it was done before.
@@ -220,10 +240,15 @@ Result<int> analyze(const AnalyzeArguments& arguments, CommandContext& context) 
     said->corrections = *arguments.corrected;
     said->mesh = std::filesystem::path(arguments.in).filename().string();
   }
+  const Result<std::optional<FileLabel>> of_session = label_of_session_of(arguments.in);
+  if (!of_session) {
+    return std::unexpected(of_session.error());
+  }
   std::optional<StampedWork> work;
   if (is_stampable(arguments)) {
-    Result<StampedWork> begun = StampedWork::begin(
-        stamp_beside(arguments.out), "analyze", parameters_of(arguments, *said), {arguments.in}, context.job);
+    Result<StampedWork> begun =
+        StampedWork::begin(stamp_beside(arguments.out), "analyze",
+                           parameters_of(arguments, *said, *of_session), {arguments.in}, context.job);
     if (!begun) {
       return std::unexpected(begun.error());
     }
@@ -271,7 +296,7 @@ Result<int> analyze(const AnalyzeArguments& arguments, CommandContext& context) 
   WedgeFile file = wedge_file(comes_again ? from_folder_of(arguments.in, arguments.out)
                                           : std::filesystem::path(arguments.in).filename().string(),
                               options, *analysis);
-  file.label = read_mesh_label(arguments.in);
+  file.label = *of_session ? **of_session : read_mesh_label(arguments.in);
   file.unit_assumed = read->unit_assumed;
   if (const Status started = work ? work->start() : Status(); !started) {
     return std::unexpected(started.error());

@@ -11,6 +11,7 @@
 #include "analysis/surface_fields.h"
 #include "core/wedge_correction.h"
 #include "formats/corrections_json.h"
+#include "formats/file_label.h"
 #include "station/command/command.h"
 
 namespace dubsar {
@@ -42,8 +43,10 @@ struct AnalyzeArguments {
 
 void add_analyze_options(CLI::App& verb, AnalyzeArguments& arguments);
 
-/// Everything beside the mesh that decides what is written, and where, for the stamp.
-[[nodiscard]] std::string parameters_of(const AnalyzeArguments& arguments, const CorrectionFile& said);
+/// Everything beside the mesh that decides what is written, and where, for the stamp. `of_session`: what the
+/// session says in which the mesh lies.
+[[nodiscard]] std::string parameters_of(const AnalyzeArguments& arguments, const CorrectionFile& said,
+                                        const std::optional<FileLabel>& of_session);
 
 /// Fills what the operator has not `said` ("--exit") in with what the wedges in arguments.out were found
 /// with, as the stamp beside them tells: else a correction would measure them by other rules, and leave

@@ -15,7 +15,8 @@
 
 namespace dubsar {
 
-std::string parameters_of(const AnalyzeArguments& a, const CorrectionFile& said) {
+std::string parameters_of(const AnalyzeArguments& a, const CorrectionFile& said,
+                          const std::optional<FileLabel>& of_session) {
   const FreeSurfaceOptions& free = a.fields.free_surface;
   nlohmann::ordered_json json{{"wedge_method", kWedgeMethod},
                               {"exit", a.exits},
@@ -34,6 +35,9 @@ std::string parameters_of(const AnalyzeArguments& a, const CorrectionFile& said)
                               {"invariant_radius_mm", a.invariants.empty() ? 0.0 : a.radius_mm}};
   if (!said.corrections.empty()) {
     json["corrections"] = corrections_to_json({{}, said.corrections});
+  }
+  if (of_session) {
+    json["label"] = label_lines(*of_session, "");
   }
   return json.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
 }

@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <atomic>
+#include <memory>
 #include <string>
 #include <string_view>
 
@@ -22,6 +23,14 @@ struct LastWords {
   int status = 0;
 };
 std::atomic<const LastWords*> g_last_words{nullptr};
+
+/// Whoever waits for the device has them said, and nobody else.
+struct LastWordsGo {
+  LastWordsGo() = default;
+  ~LastWordsGo() { g_last_words = nullptr; }
+  LastWordsGo(const LastWordsGo&) = delete;
+  LastWordsGo& operator=(const LastWordsGo&) = delete;
+};
 
 LastWords last_words(const Error& error, bool json) {
   const auto line = [&] {
@@ -65,14 +74,15 @@ void end_if_told() {
 
 DevicePatience patience_with_device(const CommandContext& context) {
   return {[&job = context.job] { return job.cancelled(); },
-          [json = context.json](const Error& error) {
+          [json = context.json, go = std::make_shared<LastWordsGo>()](const Error& error) {
             finish_progress();
             log_warning(error.line());
             Error last = error;
             last.mend = "what was stored is safe, and the same command goes on with it";
-            g_last_words = new LastWords(last_words(last, json));  // for as long as the program lives
+            g_last_words = new LastWords(last_words(last, json));  // a signal may just be reading them
           },
-          [json = context.json](const Error& error) { end_without_device(error, json); }};
+          [json = context.json](const Error& error) { end_without_device(error, json); },
+          [] { g_last_words = nullptr; }};
 }
 
 }  // namespace dubsar

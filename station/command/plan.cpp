@@ -55,8 +55,8 @@ std::string joined(const std::vector<std::string>& parts) {
   return text;
 }
 
-/// Compares with what is stored, and stores what is new, the poses that the verdict rests on with it. A red
-/// map that was signed is never replaced.
+/// Compares with what is stored, and stores what is new, the poses that the verdict rests on with it; of the
+/// same red map its checklist. A red map that was signed is never replaced.
 Result<Comparison> compare_and_keep(SessionStore& store, Results& results, bool poses_are_new, bool may_write,
                                     const JobContext& job) {
   const auto differs = differs_from_stored(store, results.red_map);
@@ -64,15 +64,22 @@ Result<Comparison> compare_and_keep(SessionStore& store, Results& results, bool 
   if (differs && *differs) {
     out.compared = true;
     out.differs = **differs;
-    if (out.differs.empty() && !poses_are_new) {
-      return out;
+    const auto stored = store.load_document("red_map");
+    const bool is_same = out.differs.empty() && stored && *stored == red_map_to_json(results.red_map);
+    if (is_same && !poses_are_new) {
+      const Result<bool> anew =
+          may_write ? keep_checklist_anew(store, results.checklist) : Result<bool>(false);
+      out.made_new = anew && *anew;
+      return anew ? Result<Comparison>(std::move(out)) : std::unexpected(anew.error());
     }
     if (!out.differs.empty()) {
       log_warning("the stored red map is not what its scans and poses give: " + joined(out.differs));
     }
     if (results.checklist.sign_off && results.checklist.sign_off->holds()) {
       out.kept = true;
-      log_warning("it was signed and is kept; `dubsar register` and `dubsar scan` make new ones");
+      if (!out.differs.empty()) {
+        log_warning("it was signed and is kept; `dubsar register` and `dubsar scan` make new ones");
+      }
       return out;
     }
   } else if (!differs) {
@@ -112,7 +119,9 @@ Status follow_with_pages(SessionStore& store, const PlannedAgain& planned, const
     return {};
   }
   if (is.may_write && !is.not_followed.empty()) {
-    return take_pages_back_once(store, is.not_followed, kFollowAndPlan);
+    // Those that tell to run this alone would only lead back to here.
+    return mend_of_pages(store) == kPlan ? take_pages_back(store, is.not_followed, kFollowAndPlan)
+                                         : take_pages_back_once(store, is.not_followed, kFollowAndPlan);
   }
   if (!is.may_write || comparison.kept) {
     if (!is.behind.empty()) {

@@ -41,6 +41,10 @@ Result<int> search(const SearchArguments& arguments, CommandContext& context) {
   if (!collection->remark().empty()) {
     log_warning(collection->remark());
   }
+  for (const UnreadPlace& place : collection->unread()) {
+    log_warning(
+        fmt::format("left out: {} in {} cannot be read: {}", place.name, arguments.folder, place.reason));
+  }
   std::size_t of_another_kind = 0;
   for (const IndexedTablet& file : collection->files()) {
     if (file.complaint == kNoWedgesJson) {
@@ -102,7 +106,7 @@ void add_search(CLI::App& app, Action& chosen) {
   CLI::App* verb =
       app.add_subcommand("search", "Similar wedges and tablets over a collection, nearest first");
   const auto arguments = std::make_shared<SearchArguments>();
-  verb->add_option("folder", arguments->folder, "of analysed tablets: every wedges.json at or below it")
+  verb->add_option("folder", arguments->folder, "of analysed tablets: the wedges of each at or below it")
       ->required();
   verb->add_option("--like", arguments->like, "the wedges.json to search by")->required();
   verb->add_option("--wedge", arguments->wedge, "search for this wedge of it; otherwise for tablets like it")

@@ -22,12 +22,12 @@
 #include "station/command/left_out_scans.h"
 #include "station/command/outputs.h"
 #include "station/command/scan_set_options.h"
+#include "station/command/stitch_poses.h"
 #include "station/command/stitch_stamp.h"
 #include "station/command/stitch_taken.h"
 #include "station/mesh_json.h"
 #include "station/offline.h"
 #include "station/outward_faces.h"
-#include "station/poses_by_id.h"
 #include "station/poses_scale.h"
 #include "station/stitch_scans.h"
 #include "station/stitch_warnings.h"
@@ -65,46 +65,20 @@ Status leave_out_foreign(const ScanSetArguments& arguments, ForeignMatter& matte
   return set ? Status() : std::unexpected(set.error());
 }
 
-/// The scans' numbers and names alone; what there is to say of their files is said when they are taken.
-Result<ScanSet> names_of(const ScanSetArguments& arguments, CommandContext& context) {
-  ScanSetOptions reading = arguments.reading();
-  reading.again = true;
-  std::vector<StationScan> names;
-  const auto take = [&](const ScanSet&, const StationScan& scan) -> Status {
-    StationScan& name = names.emplace_back();
-    name.id = scan.id;
-    name.file = scan.file;
-    name.read_from = scan.read_from;
-    return {};
-  };
-  Result<ScanSet> set = visit_scan_set(arguments.path, reading, take, context.job);
-  if (set) {
-    set->scans = std::move(names);
-  }
-  return set;
-}
-
 /// Scan by scan, where the poses are known beforehand. One is made ready while the next is read: no more than
-/// two grids are in memory.
+/// two grids are in memory, and a third for a moment where names are looked for in renamed files.
 Result<Taken> take_scan_by_scan(const ScanSetArguments& arguments, Stitcher& stitcher,
                                 CommandContext& context) {
   if (const Status good = arguments.check_unit(arguments.poses); !good) {
     return std::unexpected(good.error());
   }
-  std::optional<std::vector<ScanPose>> file;
+  std::optional<GivenPoses> file;
   if (!arguments.poses.empty()) {
-    Result<std::vector<ScanPose>> read = read_poses_file(arguments.poses, arguments.unit, arguments.path);
+    Result<GivenPoses> read = GivenPoses::read(arguments, context.job);
     if (!read) {
       return std::unexpected(read.error());
     }
     file = std::move(*read);
-    if (!SessionStore::is_session(arguments.path) && may_have_other_names(*file, arguments.path)) {
-      const Result<ScanSet> names = names_of(arguments, context);
-      if (!names) {
-        return std::unexpected(names.error());
-      }
-      let_numbers_tell(names->scans, arguments.poses, &*file);
-    }
   }
   Taken taken;
   std::size_t with_pose = 0;
@@ -113,11 +87,16 @@ Result<Taken> take_scan_by_scan(const ScanSetArguments& arguments, Stitcher& sti
   std::future<Status> adding;
   const auto take = [&](const ScanSet& set, StationScan scan) -> Status {
     const auto stored = std::ranges::find(set.poses, scan.id, &ScanPose::id);
-    const ScanPose* pose = file ? pose_in_file(*file, scan) : stored == set.poses.end() ? nullptr : &*stored;
+    const Result<const ScanPose*> found = file                        ? file->of(scan, context.job)
+                                          : stored == set.poses.end() ? nullptr
+                                                                      : &*stored;
+    if (!found) {
+      return std::unexpected(found.error());
+    }
+    const ScanPose* pose = *found;
     taken.lacks_poses = taken.lacks_poses || (pose == nullptr && !file);
     if (pose == nullptr && file) {
-      taken.leave_out(
-          {scan.id, scan.file, LeftOutScan::Why::kNoPose, arguments.poses + " has no pose of it"});
+      taken.leave_out({scan.id, scan.file, LeftOutScan::Why::kNoPose, file->lacks(scan)});
     }
     if (pose == nullptr || taken.lacks_poses) {
       return {};
@@ -163,8 +142,9 @@ Result<Taken> take_scan_by_scan(const ScanSetArguments& arguments, Stitcher& sti
   if (file && with_pose == 0) {
     return no_pose_of_these(arguments.poses);
   }
+  const std::optional<std::vector<ScanPose>> rest = file ? std::optional(file->rest()) : std::nullopt;
   const Status told =
-      taken.lacks_poses ? Status() : leave_out_unread(*set, arguments.path, file ? &*file : nullptr, taken);
+      taken.lacks_poses ? Status() : leave_out_unread(*set, arguments.path, rest ? &*rest : nullptr, taken);
   if (!told) {
     return std::unexpected(told.error());
   }

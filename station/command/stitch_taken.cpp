@@ -30,16 +30,15 @@ void leave_out(const std::vector<ScanCopy>& copies, Taken& taken) {
 }  // namespace
 
 Status leave_out_unread(const ScanSet& set, const std::filesystem::path& path,
-                        const std::vector<ScanPose>* file, Taken& taken) {
+                        const std::vector<ScanPose>* rest, Taken& taken) {
   Result<std::vector<LeftOutScan>> unread = unread_scans(set);
   if (!unread) {
     return std::unexpected(unread.error());
   }
   const bool some_lack =
-      file != nullptr &&
-      std::cmp_less(taken.scans, std::ranges::count(*file, PoseStatus::kRegistered, &ScanPose::status));
+      rest != nullptr && std::ranges::find(*rest, PoseStatus::kRegistered, &ScanPose::status) != rest->end();
   for (LeftOutScan& one : *unread) {
-    if (file != nullptr) {
+    if (rest != nullptr) {
       StationScan scan;
       scan.id = one.id;
       scan.file = one.file;
@@ -47,7 +46,7 @@ Status leave_out_unread(const ScanSet& set, const std::filesystem::path& path,
       if (!set.is_session()) {
         scan.read_from = std::filesystem::absolute(path / one.file, not_there).lexically_normal();
       }
-      const ScanPose* pose = pose_in_file(*file, scan);
+      const ScanPose* pose = pose_in_file(*rest, scan);
       one.is_missed = pose != nullptr ? pose->status == PoseStatus::kRegistered : some_lack;
     }
     taken.leave_out(std::move(one));

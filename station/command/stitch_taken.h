@@ -32,9 +32,10 @@ struct Taken {
 };
 
 /// What of the set cannot be read. Whether the poses of a file, where there is one, make it a part of the
-/// mesh is not known of a file that they do not name: it may be the one that is lacking of theirs.
+/// mesh is not known of a file that they do not name: it may be the one that is lacking of theirs. `rest`:
+/// the poses that no scan was given.
 [[nodiscard]] Status leave_out_unread(const ScanSet& set, const std::filesystem::path& path,
-                                      const std::vector<ScanPose>* file, Taken& taken);
+                                      const std::vector<ScanPose>* rest, Taken& taken);
 /// Says in which scans something foreign was found. Of one that has nothing else nothing is stitched.
 void tell_foreign(const std::vector<ForeignFound>& foreign, Taken& taken, Stitcher& stitcher);
 /// Those that only repeat another's samples.

@@ -149,11 +149,12 @@ struct Found {
 /// Each page, and why it is behind.
 std::vector<Error> pages_behind(const SessionStore& store) {
   const std::string why = why_pages_are_behind(store);
+  const std::string mend = why.empty() ? std::string() : mend_of_pages(store);
   std::vector<Error> out;
   for (const char* page : kPages) {
     std::error_code unknown;
     if (!why.empty() && fs::exists(store.folder() / page, unknown)) {
-      out.push_back({ErrorKind::kUsage, why, page, kPlan});
+      out.push_back({ErrorKind::kUsage, why, page, mend});
     }
   }
   return out;

@@ -2,12 +2,18 @@
 // Copyright The Dubsar developers
 #include "drivers/driver_call.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
+#include <algorithm>
 #include <cstdlib>
+#include <string>
 #include <thread>
 
 #include "build_paths.h"
+#include "drivers/driver.h"
+#include "drivers/frame.h"
 #include "drivers/loader.h"
 #include "tests/support/in_child.h"
 
@@ -44,6 +50,44 @@ TEST(DriverCall, AnExitWithinOneIsAFailureOfTheDevice) {
             }),
             5)
       << "none is under way";
+}
+
+TEST(DriverCall, AnExitNamesTheDriverOfItsOwnThread) {
+  int ends[2];
+  ASSERT_EQ(::pipe(ends), 0);
+  const int status = test::in_child([&] {
+    ::dup2(ends[1], STDERR_FILENO);
+    const DriverCall camera("camera:1");
+    std::thread([] {
+      const DriverCall rig("rig:1");
+      { const DriverCall light("light:1"); }
+      const DriverCall stage("stage:1");
+      std::exit(0);
+    }).join();
+    return 1;
+  });
+  ::close(ends[1]);
+  EXPECT_EQ(status, 3);
+  std::string said(1000, ' ');
+  said.resize(static_cast<std::size_t>(std::max<ssize_t>(::read(ends[0], said.data(), said.size()), 0)));
+  ::close(ends[0]);
+  EXPECT_THAT(said, ::testing::StartsWith("dubsar: stage:1: the driver ended the program"));
+}
+
+TEST(DriverCall, GivingAFrameBackIsOne) {
+  static std::string during;
+  dubsar_driver driver{};
+  driver.scheme = "camera";
+  driver.release_frame = [](dubsar_device*, std::uint64_t) {
+    const auto call = longest_driver_call();
+    during = call ? call->device : std::string();
+  };
+  int device = 0;
+  {
+    const FrameLease lease(&driver, {reinterpret_cast<dubsar_device*>(&device), [](dubsar_device*) {}}, 1);
+  }
+  EXPECT_EQ(during, "camera");
+  EXPECT_FALSE(longest_driver_call());
 }
 
 /// What is known while its rows come.

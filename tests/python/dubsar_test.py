@@ -127,6 +127,24 @@ class Grids(unittest.TestCase):
         with self.assertRaises(dubsar.UsageError):
             dubsar.Grid(x, x, x, valid=np.ones((5, 4), bool))
 
+    def test_what_is_masked_is_no_sample(self):
+        y, x = np.mgrid[0:4, 0:5] * 0.1
+        z = np.ma.masked_equal(np.where(x > 0.35, -999.0, 0.0), -999.0)
+        grid = dubsar.Grid(x, y, z)
+        np.testing.assert_array_equal(grid.valid, ~z.mask)
+        self.assertEqual(grid.z.min(), 0)
+        self.assertEqual(len(dubsar.Grid(x, y, z, valid=x > 0.05)), 12)
+        self.assertEqual(len(dubsar.Grid(np.ma.masked_less(x, 0.05), y, z)), 12)
+        self.assertEqual(len(dubsar.Grid(x, y, np.ma.array(x))), 20)
+        valid = np.ma.array(np.ones((4, 5), bool), mask=x < 0.05)
+        self.assertEqual(len(dubsar.Grid(x, y, x, valid=valid)), 16)
+        self.assertEqual(len(dubsar.Grid(x, y, np.ma.array(x, mask=True))), 0)
+        bright = np.ma.array(x, mask=z.mask)
+        self.assertEqual(dubsar.Grid(x, y, z, intensity=bright).intensity[0, 4], 0)
+        for name in ("intensity", "confidence"):
+            with self.assertRaisesRegex(dubsar.UsageError, f"^{name} is masked where the grid has a sample"):
+                dubsar.Grid(x, y, x, **{name: bright})
+
     def test_numbers_of_a_map_are_refused_before_they_are_rounded(self):
         y, x = np.mgrid[0:20, 0:30] * 0.1
         self.assertEqual(len(dubsar.Grid(x + 900, y, x)), 600)
@@ -175,6 +193,23 @@ class Grids(unittest.TestCase):
 class Meshes(unittest.TestCase):
     corners = [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]]
     sides = [[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]]
+
+    def test_takes_no_mask(self):
+        corners = np.ma.array([[0.0, 0, 0], [1, 0, 0], [0, 1, 0]])
+        faces = np.ma.array([[0, 1, 2]])
+        self.assertEqual(len(dubsar.Mesh(corners, faces).vertices), 3)
+        holes = np.ma.masked_equal(corners, 1)
+        one = np.ma.array([1.0, 1, 1], mask=[0, 0, 1])
+        matrix = np.ma.array(np.eye(4), mask=np.eye(4, k=3))
+        for name, made in (
+            ("vertices", lambda: dubsar.Mesh(holes, faces)),
+            ("faces", lambda: dubsar.Mesh(corners, np.ma.masked_equal(faces, 2))),
+            ("normals", lambda: dubsar.Mesh(corners, faces, normals=holes)),
+            ("reliability", lambda: dubsar.Mesh(corners, faces, reliability=one)),
+            ("model_from_scanner", lambda: dubsar.Pose(0, matrix)),
+        ):
+            with self.assertRaisesRegex(dubsar.UsageError, f"^{name} has masked values"):
+                made()
 
     def test_tetrahedron(self):
         mesh = dubsar.Mesh(self.corners, self.sides)

@@ -121,6 +121,19 @@ TEST_F(MeshViewingTest, NumbersThatAreNoMillimetresAreTold) {
   EXPECT_THAT(said_of(0.05, "ours"), HasSubstr("perhaps its numbers are")) << "whatever it says";
 }
 
+TEST_F(MeshViewingTest, AGlbIsInMetresHoweverItIsCalled) {
+  Mesh part = *tablet_;
+  for (Eigen::Vector3f& p : part.positions) {
+    p *= 0.2F;  // 4 mm across
+  }
+  for (const char* name : {"a.glb", "A.GLB"}) {
+    const fs::path file = mesh_.parent_path() / name;
+    ASSERT_TRUE(write_mesh(file, part)) << name;
+    const ViewedMesh state = Viewer(file).state();
+    EXPECT_FALSE(state.error) << state.error->line();
+  }
+}
+
 TEST_F(MeshViewingTest, ACorrectionThatAnotherProgramMadeMeanwhileStays) {
   Viewer one(mesh_);
   Viewer other(mesh_);

@@ -199,6 +199,69 @@ TEST_F(SignedSession, PagesOfAnotherRedMapAreNamedAndMadeAnew) {
   EXPECT_THAT(verified()["behind"], IsEmpty());
 }
 
+TEST_F(SignedSession, TheChecklistComesWithThePagesWhereTheRedMapIsTheSame) {
+  run("plan");
+  const std::string map = shown("red_map.json");
+  {
+    SessionStore store = SessionStore::open(session_).value();
+    std::vector<ScanPose> poses = store.poses().value();
+    poses[1].warning = "pin 3 has moved";
+    ASSERT_TRUE(store.save_poses(poses));
+  }
+  const nlohmann::json planned = run("plan", {"--json"}).json();
+  EXPECT_EQ(planned["stored"]["same"], true);
+  EXPECT_EQ(shown("red_map.json"), map);
+  const SessionStore store = SessionStore::open(session_, SessionStore::Access::kReadOnly).value();
+  EXPECT_THAT(**store.load_document("checklist"), HasSubstr("pin 3 has moved"));
+  EXPECT_THAT(shown("checklist.html"), HasSubstr("pin 3 has moved"));
+}
+
+TEST_F(SignedSession, ARedMapOfTheSameMeaningIsKeptAsThePagesHaveIt) {
+  const std::string map = shown("red_map.json");
+  {
+    SessionStore store = SessionStore::open(session_).value();
+    ASSERT_TRUE(store.save_document("red_map", nlohmann::ordered_json::parse(map).dump(2)));
+  }
+  EXPECT_THAT(verified()["behind"], SizeIs(2));
+  EXPECT_EQ(run("plan", {"--json"}).json()["stored"]["same"], true);
+  const nlohmann::json found = verified();
+  EXPECT_THAT(found["behind"], IsEmpty()) << found["behind"];
+  EXPECT_EQ(found["sign_offs"][0]["holds"], true);
+}
+
+TEST_F(SignedSession, AScanTooFarAwayForTheModelLeavesNoPageBehind) {
+  {
+    SessionStore store = SessionStore::open(session_).value();
+    std::vector<ScanPose> poses = store.poses().value();
+    poses[2].model_from_scanner.translation_mm.x() = 1e9;
+    ASSERT_TRUE(store.save_poses(poses));  // as earlier versions kept it
+  }
+  EXPECT_THAT(verified()["behind"], SizeIs(2));
+  run("plan");
+  EXPECT_EQ(json_of("poses.json")["scans"][2]["status"], "failed");
+  const nlohmann::json found = verified();
+  EXPECT_THAT(found["behind"], IsEmpty()) << found["behind"];
+}
+
+TEST_F(SignedSession, PagesOfPosesThatFollowNothingDoNotSendToThePlanAlone) {
+  nlohmann::json moved = json_of("poses.json");
+  moved["scans"][1]["model_from_scanner"][3] = moved["scans"][1]["model_from_scanner"][3].get<double>() + 0.1;
+  const fs::path file = at("a bit.json");
+  std::ofstream(file) << moved;
+  run("register", {"--from-poses", file.string()});
+  expect_behind("the scans were registered anew");
+  EXPECT_EQ(verified()["behind"][0]["mend"], "run dubsar plan on the session");
+  // As a program that is killed before it has poses that follow.
+  ASSERT_TRUE(SessionStore::open(session_)->drop_scan(2));
+  run("plan");
+  expect_behind("scan 2 has been taken out");
+  EXPECT_THAT(shown("checklist.html"), HasSubstr("run dubsar register and dubsar plan on the session"));
+  EXPECT_EQ(verified()["behind"][0]["mend"], "run dubsar register and dubsar plan on the session");
+  run("register");
+  run("plan");
+  EXPECT_THAT(verified()["behind"], IsEmpty());
+}
+
 TEST_F(SignedSession, ASessionWithoutPagesHasNoneThatAreBehind) {
   fs::remove_all(session_ / "export");
   say({"drop", "2"});

@@ -227,6 +227,68 @@ TEST_F(StitchLeftOut, AScanIsKnownByTheNameOfItsFileToo) {
   EXPECT_THAT(twice.err, HasSubstr("original_1.ply"));
 }
 
+/// As files are that were numbered anew: each has the original name of the next.
+TEST_F(StitchLeftOut, NoPoseIsOfTwoScans) {
+  const fs::path scans = fs::path(at("renumbered"));
+  fs::create_directories(scans);
+  const auto write = [&](const char* file, int number, const char* source) {
+    RangeGrid grid = test::bumpy_scan(number);
+    grid.source = source;
+    ASSERT_TRUE(write_grid_ply(scans / file, grid, {.keep_source = true}));
+  };
+  const auto said = [&](const char* verb) {
+    test::Arguments words{verb, scans.string(), "--poses", at("two.json"), "--json"};
+    if (verb == std::string("stitch")) {
+      words.insert(words.end(), {"-o", at("mesh.ply")});
+    }
+    const Outcome outcome = run_command(words);
+    EXPECT_THAT(outcome.err, HasSubstr("two.json has no pose of it: the one of its name is another scan's"));
+    return outcome.json()["left_out"];
+  };
+  std::vector<ScanPose> poses(poses_.begin(), poses_.begin() + 2);
+  poses[0].file = "a.ply";
+  poses[1].file = "c.ply";
+  ASSERT_TRUE(write_poses(at("two.json"), poses));
+  write("a.ply", 0, "a.ply");
+  write("c.ply", 2, "d.ply");  // its file alone is called c.ply, and it may come before or after scan c.ply
+  for (const char* file : {"b.ply", "x.ply"}) {
+    write(file, 1, "c.ply");
+    for (const char* verb : {"plan", "stitch"}) {
+      const nlohmann::json left_out = said(verb);
+      ASSERT_THAT(left_out, SizeIs(1)) << verb << " " << file;
+      EXPECT_EQ(left_out[0]["file"], "d.ply");
+      EXPECT_EQ(left_out[0]["state"], "no_pose");
+    }
+    fs::remove(scans / file);
+  }
+  // Of two with the one name it is of neither, unless one's file is called so.
+  write("b.ply", 1, "c.ply");
+  write("x.ply", 2, "c.ply");
+  for (const char* verb : {"plan", "stitch"}) {
+    EXPECT_THAT(said(verb), SizeIs(3)) << verb;
+  }
+  write("c.ply", 1, "c.ply");
+  for (const char* verb : {"plan", "stitch"}) {
+    EXPECT_THAT(said(verb), SizeIs(2)) << verb;
+  }
+}
+
+TEST_F(StitchLeftOut, OfASessionsScansOfOneNameTheNumberTells) {
+  poses_.resize(1);
+  poses_[0].id = 5;
+  ASSERT_TRUE(write_poses(at("one.json"), poses_));
+  EXPECT_EQ(stitched("session", {"--poses", at("one.json")}).json()["scans"], 1) << "its name is its own";
+  RangeGrid again = test::bumpy_scan(4);
+  again.source = test::scan_name(0);
+  ASSERT_TRUE(SessionStore::open(at("session"))->add_grid(again));
+  EXPECT_EQ(stitched("session", {"--poses", at("one.json")}).status, 2) << "it may be of either";
+  poses_[0].id = 4;
+  ASSERT_TRUE(write_poses(at("one.json"), poses_));
+  const nlohmann::json numbered = stitched("session", {"--poses", at("one.json")}).json();
+  EXPECT_EQ(numbered["scans"], 1);
+  EXPECT_EQ(numbered["left_out"][0]["id"], 0);
+}
+
 TEST_F(StitchLeftOut, FallsShortWithoutAFileOfAFolder) {
   harm(1);
   for (const Outcome& outcome : {with_poses(), stitched("scans")}) {

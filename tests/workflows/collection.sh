@@ -25,6 +25,18 @@ ln -s "$folder.far/scan.ply" "$folder/three/model.ply"
 listed=$("$workflows/list-tablets" "$folder" 2>"$folder/said")
 [ "$listed" = $'export/one\nlinked\nmuseum/a b\nmuseum/c\nsession\nsub/mesh/two\nthree' ] || fail "list-tablets: $listed"
 [[ $(cat "$folder/said") == "list-tablets: lost: a session without its session.sqlite"* ]] || fail "list-tablets: $(cat "$folder/said")"
+# One that lost its backup, too, is known by what else a session has.
+mkdir -p "$folder"/lost.sums/{grids,mesh} "$folder"/lost.lock "$folder"/lost.link "$folder"/lost.results
+touch "$folder"/lost.sums/{session.sums,mesh/model.ply} "$folder"/lost.lock/session.lock
+ln -s nowhere "$folder/lost.link/session.sqlite"
+[ "$("$workflows/list-tablets" "$folder" 2>"$folder/said")" = "$listed" ] || fail "a session without database and backup is listed"
+said=$(LC_ALL=C sort "$folder/said")
+without="a session without its session.sqlite, left out; dubsar verify --repair makes it anew"
+[ "$said" = "list-tablets: lost.link: $without
+list-tablets: lost.lock: $without
+list-tablets: lost.sums: $without
+list-tablets: lost: $without" ] || fail "list-tablets says: $said"
+rm -r "$folder"/lost.*
 listed=$("$workflows/list-tablets" "$folder/session")
 [ "$listed" = . ] || fail "list-tablets of a session: $listed"
 # What cannot be gone through is told of and keeps nobody from the rest; what lies in sessions or is hidden is not told of.
@@ -191,6 +203,13 @@ mv "$folder/aside.done" "$folder/museum/s.results/package.done"
 printf 'x' >>"$folder/museum/s.results/package/data/README.txt"
 said=$("$workflows/check-collection" "$folder" 2>/dev/null) && fail "check-collection overlooks damage to a package"
 [ "$said" = "museum/s: package/data/README.txt has other bytes than were written" ] || fail "check-collection: $said"
+truncate -s -1 "$folder/museum/s.results/package/data/README.txt"
+"$workflows/check-collection" "$folder" 2>/dev/null || fail "check-collection of a package as it was"
+mkdir "$folder/museum/s.results/package/data/more"
+echo mine >"$folder/museum/s.results/package/data/more/mine.txt"
+said=$("$workflows/check-collection" "$folder" 2>/dev/null) && fail "check-collection overlooks a file that no manifest lists"
+[ "$said" = "museum/s: package/data/more/mine.txt was not written with the package; the bag is not valid with it" ] ||
+  fail "check-collection: $said"
 for script in "$workflows"/*; do
   case $(head -1 "$script") in *bash) bash -n "$script" || fail "$script" ;; esac
 done

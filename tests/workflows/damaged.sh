@@ -91,3 +91,54 @@ logged whole 'export failed status=4 \{"error":'
 said=$("$workflows/check-collection" "$folder" 2>/dev/null) && fail "check-collection overlooks a failure"
 [[ $said == 'whole: was done before, and then: export failed status=4 {"error":'* ]] || fail "check-collection: $said"
 DUBSAR_EXPORT=no "$workflows/check-collection" "$folder" 2>/dev/null || fail "check-collection, of wedges alone"
+
+# What a person has said in the session is in its wedges here as in its package, and made out once.
+do_tablet 0 whole
+beside=$folder/whole.results/wedges.json
+wedges_of() { grep -c '"depth_point"' "$1"; }
+before=$(wedges_of "$beside")
+place=$(tr -d ' \n' <"$beside" | sed -E 's/.*"wedges":\[\{"id":0,"depth_point":(\[[^]]*\]).*/\1/')
+echo "{\"unit\":\"mm\",\"mesh\":\"model.ply\",\"corrections\":[{\"do\":\"delete\",\"at\":[$place]}]}" \
+  >"$folder/whole/analysis/wedges.corrections.json"
+do_tablet 0 whole
+[ "$(wedges_of "$beside")" = $((before - 1)) ] || fail "$before wedges, and one taken out: $(wedges_of "$beside")"
+[ "$(wedges_of "$folder/whole.results/package/data/wedges/wedges.json")" = $((before - 1)) ] || fail "the package has others"
+done_before=$(times whole 'analyze end')
+do_tablet 0 whole
+[ "$(times whole 'analyze end')" = "$done_before" ] || fail "corrected wedges were made out twice"
+# The session keeps its own mesh, which was stitched before it had a number: its wedges have the number all the same.
+[ "$(times whole 'stitch begin')" = 0 ] || fail "the mesh of the session was stitched again"
+grep -q '"BM 77"' "$beside" || fail "no museum number: $(head -n 12 "$beside")"
+# A search finds the tablet once, however often its wedges lie here.
+said=$("$DUBSAR" -q search "$folder" --like "$beside" --json 2>/dev/null) || fail "search"
+[[ $said == *'"files":1,'* ]] || fail "a search takes one tablet for more: $said"
+# Those beside the wedges are used where the session has none, else told of.
+mv "$folder/whole/analysis/wedges.corrections.json" "$folder/whole.results/"
+DUBSAR_EXPORT=no do_tablet 0 whole
+[ "$(wedges_of "$beside")" = $((before - 1)) ] || fail "corrections beside the wedges are not used"
+echo '{"unit":"mm","mesh":"model.ply","corrections":[]}' >"$folder/whole/analysis/wedges.corrections.json"
+DUBSAR_EXPORT=no do_tablet 0 whole
+[ "$(wedges_of "$beside")" = "$before" ] || fail "corrections beside the wedges come before those of the session"
+logged whole 'analyze passes over whole.results/wedges.corrections.json: '
+
+# Of a session without a standing scan there are no wedges; it is packed all the same.
+cp -r "$folder/whole" "$folder/none"
+for scan in 0 1 2; do "$DUBSAR" -q session drop "$folder/none" $scan >/dev/null || fail "drop"; done
+do_tablet 2 none
+logged none 'export end'
+"$DUBSAR" -q verify "$folder/none.results/package" >/dev/null 2>&1 || fail "the package of a session without a scan"
+said=$("$workflows/check-collection" "$folder" 2>/dev/null) && fail "check-collection overlooks a session without a scan"
+[[ $said == 'none: is not done: stitch failed status=2 {"error":{"what":"no scan in it"'* ]] || fail "check-collection: $said"
+rm -r "$folder"/none* "$folder/log/none.log"
+
+# A start that was cut off anywhere is told of, for what there is may be of the start before.
+"$workflows/check-collection" "$folder" 2>/dev/null || fail "check-collection before a cut"
+cp "$folder/log/whole.log" "$folder/whole.log"
+line=$(tail -n 1 "$folder/whole.log" | grep -o '^.* pid=[0-9]*')
+for said in 'verify begin' 'session falls-short damaged: one' 'stitch begin' 'stitch end left_out [{}]' 'analyze begin' 'export begin'; do
+  { cat "$folder/whole.log"; echo "$line $said"; } >"$folder/log/whole.log"
+  told=$("$workflows/check-collection" "$folder" 2>/dev/null) && fail "check-collection overlooks a start that was cut off at $said"
+  [ "$told" = "whole: was done before, and then: ${said%% *} was begun and not ended; start do-tablet again" ] || fail "check-collection: $told"
+done
+DUBSAR_EXPORT=no "$workflows/check-collection" "$folder" 2>/dev/null || fail "check-collection, of wedges alone, before a package"
+cp "$folder/whole.log" "$folder/log/whole.log"
