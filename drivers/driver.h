@@ -173,7 +173,7 @@ typedef struct dubsar_capabilities {
 /* Where the next scan is to be taken from. */
 typedef struct dubsar_placement {
   uint32_t struct_size;
-  uint32_t has_hand_turn; /* nonzero: the tablet is first turned by hand */
+  uint32_t has_hand_turn; /* nonzero: the tablet was turned by hand for it; see place() */
   double turntable_rad;
   double tilt_rad;
   /* The turn that is asked for, tablet_new_from_tablet_old in the stage frame, about the tablet's centre. The
@@ -399,7 +399,10 @@ typedef struct dubsar_driver {
    * where it stands: the origin of the scanner frame along a line, the turn by the shorter way at the same
    * time; Dubsar sends the stops in between that keep it clear of the tablet. The first placement may start
    * anywhere, and is the driver's to make safe. A driver refuses what lies outside its limits, or where its
-   * head would touch the support or the tablet as far as it knows them, with DUBSAR_USAGE before it moves. */
+   * head would touch the support or the tablet as far as it knows them, with DUBSAR_USAGE before it moves.
+   * A placement with a hand turn is asked for only after the operator has said that the tablet lies so and
+   * that no hand is near: place() waits for nobody, and drives at once. The scheme "sim" alone is asked
+   * without that word, as it turns a tablet that nobody's hands are at. */
   int32_t (*place)(dubsar_device* device, const dubsar_placement* placement, dubsar_error* error);
   /* Runs the next scan into the sink, from begin to end. DUBSAR_END, with no callback made, when a finite
    * source has played its last. After a bad scan of a finite source, the next call goes on with the one

@@ -33,8 +33,8 @@ struct EngineOptions {
   std::string limits_file = {};                 ///< for what is said about them
   std::optional<Eigen::Vector3d> size_mm = {};  ///< of the tablet, where the operator gave it
   /// Somebody stands beside it: each turn by hand, and what follows a scan that was not taken up, waits for a
-  /// ScanNow (event WaitsForOperator). A device without an end that cannot be placed then gives scan after
-  /// scan, one for each ScanNow, until Finish.
+  /// ScanNow (event WaitsForOperator), as does all but the first scan of an endless device without motors.
+  /// What is automatic waits so in any case, but not behind such a scan; only sim: turns its own tablet.
   bool paced = false;
   bool first_scan_waits = false;                     ///< of a paced run: so does its first scan
   bool yields = false;                               ///< to a window: what computes comes after it

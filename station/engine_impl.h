@@ -134,6 +134,7 @@ struct Engine::Impl {
   std::map<int, Placement> drives_of_scans;  ///< of the storing thread once the pipeline runs
   bool wait_for_plan = false;                ///< the session that goes on says first whether it needs more
   bool drives = false;                       ///< automatic, and the device can be placed
+  bool waits_for_hands_alone = false;        ///< paced, but for scans that were not taken up
   bool begins_again = false;                 ///< the run was started for a ScanAgain
 
   struct Queues {

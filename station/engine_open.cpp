@@ -12,6 +12,11 @@ namespace dubsar {
 
 namespace {
 
+/// A hand turn is a motion of its own: nobody's hands are at the tablet.
+bool turns_its_own_tablet(const DeviceUri& device) {
+  return device.scheme == "sim";
+}
+
 /// How the tablet lay for a scan that is not read: the operator may put it back. Where its file does not
 /// tell, no more often than there were scans was the tablet lifted.
 int placement_of(const SessionStore& store, const StoredScan& scan) {
@@ -155,6 +160,9 @@ Status Engine::Impl::open(JobContext& job) {
     emit(Notice{*reminder});
   }
   drives = options.automatic && source->capabilities().can_place;
+  // Nothing moves, and no laser goes on, before somebody has said that the tablet is turned.
+  waits_for_hands_alone = options.automatic && !options.paced && !turns_its_own_tablet(source->uri());
+  options.paced = options.paced || waits_for_hands_alone;
   if (drives && options.max_scans <= 0) {
     options.max_scans = kAutomaticScans;
   }

@@ -16,7 +16,7 @@ bool Engine::Impl::must_wait(const NextStep& step) const {
     return true;
   }
   const bool by_hand = step && step->view.placement && step->view.placement->hand_turn;
-  return by_hand || !last_scan_taken_up;
+  return by_hand || !(last_scan_taken_up || waits_for_hands_alone);
 }
 
 std::shared_ptr<void> Engine::Impl::begin_thought() {

@@ -2,9 +2,6 @@
 // Copyright The Dubsar developers
 // dubsar calibrate --rig: the pictures are taken with the rig itself.
 
-#include <poll.h>
-#include <unistd.h>
-
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
@@ -18,44 +15,13 @@
 #include "station/command/calibrate.h"
 #include "station/command/command.h"
 #include "station/command/device_wait.h"
+#include "station/command/operator_lines.h"
 #include "station/command/option_checks.h"
 #include "station/command/terminal.h"
 
 namespace dubsar {
 
 namespace {
-
-/// A line of the operator; nothing at the end of the input, or when the job was cancelled.
-class OperatorLines {
- public:
-  explicit OperatorLines(const JobContext& job) : job_(job) {}
-  std::optional<std::string> next() {
-    for (;;) {
-      if (const std::size_t end = pending_.find('\n'); end != std::string::npos) {
-        std::string out = pending_.substr(0, end);
-        pending_.erase(0, end + 1);
-        return out;
-      }
-      pollfd waiting{STDIN_FILENO, POLLIN, 0};
-      if (job_.cancelled()) {
-        return std::nullopt;
-      }
-      if (::poll(&waiting, 1, 200) <= 0) {
-        continue;
-      }
-      char bytes[256];
-      const ssize_t got = ::read(STDIN_FILENO, bytes, sizeof bytes);
-      if (got <= 0) {
-        return std::nullopt;
-      }
-      pending_.append(bytes, static_cast<std::size_t>(got));
-    }
-  }
-
- private:
-  const JobContext& job_;
-  std::string pending_;
-};
 
 LiveCalibrationPlan plan_for(const LiveOptions& options, const RigFile& rig, const std::string& board,
                              const std::string& folder) {
@@ -152,7 +118,7 @@ Result<std::string> take_pictures(const LiveOptions& options, const std::string&
     return std::unexpected(live.error());
   }
   outlive_readers();
-  OperatorLines lines(context.job);
+  OperatorLines lines([&job = context.job] { return job.cancelled(); });
   tell_next(*live);
   for (std::optional<std::string> line = lines.next(); line && *line != "q"; line = lines.next()) {
     if (!line->empty() && *line != "s") {

@@ -24,6 +24,7 @@
 #include "formats/rig_limits_json.h"
 #include "station/command/command.h"
 #include "station/command/device_wait.h"
+#include "station/command/hand_turns.h"
 #include "station/command/option_checks.h"
 #include "station/command/scan_warnings.h"
 #include "station/command/size_option.h"
@@ -243,7 +244,14 @@ Result<int> scan(const ScanArguments& arguments, CommandContext& context) {
   outlive_readers();
   Narrator narrator;
   const DevicePatience patience = patience_with_device(context);
-  Engine engine(std::move(options), [&narrator](const Event& event) { narrator(event); });
+  HandTurns* by_hand = nullptr;
+  Engine engine(std::move(options), [&](const Event& event) {
+    if (by_hand == nullptr || !by_hand->hear(event)) {
+      narrator(event);
+    }
+  });
+  HandTurns hand_turns(engine, arguments.session, context.job);
+  by_hand = &hand_turns;
   const Result<EngineResult> result = engine.run(context.job);
   if (!result) {
     if (!narrator.has_told(result.error())) {
@@ -293,7 +301,10 @@ void add_scan(CLI::App& app, Action& chosen) {
                    "of the tablet, WxHxT in mm: what the motors keep clear of before it is seen");
   verb->add_option("--set", arguments->settings,
                    "key=value of the open device, such as exposure_us=800; kept with the session");
-  verb->add_flag("--auto", arguments->automatic, "drive the rig, or ask for hand turns, until conclusive");
+  verb->add_flag(
+      "--auto", arguments->automatic,
+      "drive the rig, or ask for hand turns, until conclusive; at each hand turn nothing moves before "
+      "Enter, and where standard input is no terminal the scanning ends, with status 1");
   verb->add_option("--max-scans", arguments->max_scans,
                    "of the whole session; default: 40 with --auto, else no limit")
       ->check(in_range(1, 100000));
