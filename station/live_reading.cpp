@@ -202,6 +202,7 @@ void LiveSession::show_sign_offs(const SessionStore& store) {
 
 void LiveSession::show_faults(const SessionStore& store, const std::vector<StoredScan>& scans) {
   state_.lost_records = lost_records(store);
+  state_.damage_found = !store.opening().damage.empty();
   for (const StoredScan& stored : scans) {
     LiveScan& scan = scan_of(stored.id);
     scan.damaged = stored.damaged;

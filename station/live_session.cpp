@@ -260,6 +260,8 @@ void LiveSession::sign(const SignOff& wanted) {
     }
     if (signing->refused) {
       end(std::unexpected(*signing->refused));
+      const std::scoped_lock lock(mutex_);
+      state_.checklist = signing->checklist;  // whether the session is whole is known anew
       return;
     }
     const std::scoped_lock lock(mutex_);

@@ -97,6 +97,7 @@ struct LiveState {
   std::string void_signed_by;          ///< the last signature, where it no longer holds; else empty
   std::string void_since;              ///< what changed first since then
   std::set<std::string> lost_records;  ///< kinds, in words (session_faults.h); empty: none
+  bool damage_found = false;           ///< on opening: of a scan, in or out, or of the records
   std::filesystem::path package;       ///< of the session as it stands, made or found here; empty: none
   std::optional<Error> error;          ///< what ended the last run or job
   bool halted = false;                 ///< the emergency stop was pressed in the run or job that goes on

@@ -2,6 +2,7 @@
 // Copyright The Dubsar developers
 #include "station/next_session.h"
 
+#include <algorithm>
 #include <charconv>
 #include <string>
 #include <system_error>
@@ -33,6 +34,21 @@ fs::path next_session_name(const fs::path& session) {
     name = stem + "-" + std::to_string(number);
   } while (fs::exists(folder.parent_path() / name, ignored));
   return name;
+}
+
+std::optional<FoundSession> session_found(const fs::path& folder) {
+  if (!SessionStore::is_session(folder)) {
+    return std::nullopt;
+  }
+  FoundSession out;
+  const Result<SessionStore> store = SessionStore::open(folder, SessionStore::Access::kReadOnly);
+  const auto scans = store ? store->scans() : std::unexpected(store.error());
+  if (scans) {
+    out.is_read = true;
+    out.record = tablet_record_of(*store);
+    out.scans = static_cast<int>(std::ranges::count(*scans, false, &StoredScan::dropped));
+  }
+  return out;
 }
 
 }  // namespace dubsar

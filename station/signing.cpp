@@ -87,6 +87,7 @@ Result<Signing> sign_verdict(const std::filesystem::path& session, SignOff wante
   }
   Results& results = planned->results;
   Signing out;
+  out.checklist = results.checklist;
   if (out.refused = stale(*set, results.red_map, session.string()); out.refused) {
     return out;
   }

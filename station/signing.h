@@ -19,7 +19,7 @@ struct Signing {
   std::optional<Error> refused;   ///< the session is not what may be signed, and what would mend it
   std::optional<Error> no_pages;  ///< signed, but the pages that show it could not be made
   std::filesystem::path page;     ///< the checklist page that shows it; empty without one
-  Checklist checklist;
+  Checklist checklist;            ///< worked out anew, also where it was refused
 };
 
 /// Puts a name under the verdict of a session once it has been worked out anew from grids and poses. name,

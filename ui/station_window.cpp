@@ -294,6 +294,12 @@ class StationWindow {
         looks_ = true;
       }
     }
+    if (operator_) {
+      if (const std::string title = operator_->title(); title != title_) {
+        title_ = title;
+        glfwSetWindowTitle(window_.handle(), title_.c_str());
+      }
+    }
     ImGui::Render();
     int width = 0;
     int height = 0;
@@ -361,6 +367,7 @@ class StationWindow {
   Preferences kept_;
   std::filesystem::path preferences_file_;
   float loaded_px_ = 0;
+  std::string title_;
   double opened_s_;
   std::vector<double> profile_waits_s_;  ///< a frame each, of the profile that waited longest
   bool draws_on_ = false;                ///< more of the picture comes at the next frame

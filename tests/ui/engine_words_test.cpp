@@ -127,6 +127,23 @@ TEST(EngineWords, EveryRefusalAndAdviceThatIsShownHasAPhrase) {
   }
 }
 
+TEST(EngineWords, WhyAPlaceIsExcusedIsGerman) {
+  int sentences = 0;
+  for (const char* file : {"planning/excuse_specks.cpp", "planning/excuse_unneeded.cpp"}) {
+    for (const std::string& reason : said_by(source_of(file), R"re("([^"]* [^"]*)")re")) {
+      ++sentences;
+      if (reason.find_first_of("abcdefghijklnopqrstuvwxyz") != std::string::npos) {  // " µm" is no word
+        EXPECT_NE(translated(reason, Language::kGerman), reason) << file;
+      }
+    }
+  }
+  EXPECT_GE(sentences, 10);
+  EXPECT_EQ(
+      translated("gap of 0.52 mm; its surroundings bend by 7 µm from a quadric, interpolation good to 22 µm",
+                 Language::kGerman),
+      "Lücke von 0,52 mm; ihre Umgebung weicht um 7 µm von einer Quadrik ab, gefüllt auf 22 µm");
+}
+
 TEST(EngineWords, RefusalsOfCorrectionsAndArtefactsAreGerman) {
   EXPECT_EQ(translated("no wedge is measured there: too shallow", Language::kGerman),
             "dort lässt sich kein Keil messen: zu flach");

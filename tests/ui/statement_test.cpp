@@ -263,7 +263,8 @@ TEST(Statement, AMapThatKnowsOfNoRedYetIsNotSaidToBeNearlyDone) {
   LiveState state = with_scan(PoseStatus::kRegistered);
   state.scans.back().pose.reset();
   state.red_map = std::make_shared<RedMap>();
-  EXPECT_EQ(statement_of(state, true, Language::kEnglish).headline, "Scans stored: 1. Go on");
+  EXPECT_EQ(statement_of(state, true, Language::kEnglish).headline,
+            "A scan is not judged yet: Finish judges it");
 }
 
 TEST(Statement, WhatEndedTheRunIsToldWithItsMend) {

@@ -8,7 +8,9 @@
 
 #include "archive/seen_line.h"
 #include "station/session_name.h"
+#include "ui/operator/before_signing.h"
 #include "ui/operator/operator_screen.h"
+#include "ui/shell/face_texts.h"
 #include "ui/shell/sound.h"
 
 namespace dubsar::ui {
@@ -162,6 +164,49 @@ std::string OperatorScreen::title_of(const UiContext& ui, Text what) const {
                      seen_line(number.empty() ? session_name(session_.folder()) : number));
 }
 
+/// The largest of what is excused, with the reasons, and the page that has them all.
+void OperatorScreen::draw_excused(UiContext& ui) {
+  if (!state_.red_map || excused_mm2(*state_.red_map) <= 0) {
+    return;
+  }
+  constexpr std::size_t kMostPlaces = 4;
+  const Language language = ui.preferences.language;
+  std::vector<std::string> lines;
+  double others_mm2 = 0;
+  for (const ExcusedPlaces& one : excused_places(*state_.red_map)) {
+    if (lines.size() < kMostPlaces) {
+      lines.push_back(filled(ui.text(Text::kExcusedPlace), ui.text(kFaceTexts[static_cast<int>(one.face)]),
+                             area_words(one.area_mm2, language), translated(one.reason, language)));
+    } else {
+      others_mm2 += one.area_mm2;
+    }
+  }
+  if (others_mm2 > 0) {
+    lines.push_back(filled(ui.text(Text::kMoreExcused), area_words(others_mm2, language)));
+  }
+  std::error_code unknown;
+  const std::filesystem::path page = whole_name(session_.folder()) / "export" / "checklist.html";
+  if (std::filesystem::exists(page, unknown)) {
+    lines.push_back(filled(ui.text(Text::kExcusedPage), seen_line(page.string())));
+    ui.facts.insert("excused-page");
+  }
+  ImGui::PushFont(ui.fonts.small);
+  const float wide = ImGui::GetContentRegionAvail().x;
+  float high = 0;
+  for (const std::string& line : lines) {
+    high += ImGui::CalcTextSize(line.c_str(), nullptr, false, wide - ui.px(1)).y +
+            ImGui::GetStyle().ItemSpacing.y;
+  }
+  // What letters make too high is scrolled through: the lines that are typed into stay in sight.
+  ImGui::BeginChild("excused", {0, std::min(high, 0.35F * ImGui::GetIO().DisplaySize.y)});
+  for (const std::string& line : lines) {
+    coloured_text(is_much_excused(state_) ? ui.colours.amber : ui.colours.text, line.c_str());
+  }
+  ImGui::EndChild();
+  ui.target("excused");
+  ImGui::PopFont();
+}
+
 void OperatorScreen::draw_signing(UiContext& ui) {
   if (!begin_box(ui, title_of(ui, Text::kSign).c_str(), "###sign", open_sign_, ui.px(32))) {
     return;
@@ -175,8 +220,12 @@ void OperatorScreen::draw_signing(UiContext& ui) {
       coloured_text(ui.colours.amber, warning.c_str());
     }
   }
-  const bool conclusive = state_.red_map && state_.red_map->conclusive;
-  const bool enough = says(sign_name_) && (conclusive || says(sign_incomplete_));
+  draw_excused(ui);
+  const SigningReason reason = signing_reason(state_);
+  if (is_damaged(state_)) {
+    coloured_text(ui.colours.amber, ui.text(Text::kDamagedOrReason));
+  }
+  const bool enough = says(sign_name_) && (!reason.wanted || says(sign_incomplete_));
   // The first line that lacks has the cursor: whoever signs needs no mouse. So too when enter was too early.
   const bool appears = ImGui::IsWindowAppearing();
   const bool too_early = !appears && !enough && confirms();
@@ -198,8 +247,10 @@ void OperatorScreen::draw_signing(UiContext& ui) {
   };
   line("sign-name", Text::kSignName, sign_name_);
   text_line(ui, "sign-role", ui.text(Text::kSignRole), sign_role_);
-  if (!conclusive) {
+  if (reason.wanted) {
     line("sign-incomplete", Text::kSignIncomplete, sign_incomplete_);
+  } else if (reason.asked) {
+    text_line(ui, "sign-incomplete", ui.text(Text::kSignIncomplete), sign_incomplete_);
   }
   // The line that has the cursor by itself must not cost a second escape.
   if (!enough && ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape), false)) {
@@ -209,7 +260,7 @@ void OperatorScreen::draw_signing(UiContext& ui) {
     SignOff wanted;
     wanted.name = sign_name_;
     wanted.role = sign_role_;
-    wanted.incomplete = conclusive ? std::string() : sign_incomplete_;
+    wanted.incomplete = reason.asked && says(sign_incomplete_) ? sign_incomplete_ : std::string();
     ui.preferences.operator_name = sign_name_;
     session_.sign(wanted);
     ImGui::CloseCurrentPopup();
@@ -245,9 +296,28 @@ void OperatorScreen::draw_next(UiContext& ui) {
       ImGui::CloseCurrentPopup();
     }
   }
-  if (confirmed(ui, "next-now", Text::kNextNow, !next_folder_.empty() && may_leave())) {
-    next_session_ = whole_name(session_.folder()).parent_path() / next_folder_;
-    ImGui::CloseCurrentPopup();
+  if (next_folder_ != next_asked_for_) {
+    next_found_.reset();
+  }
+  if (next_found_) {
+    const FoundSession& found = *next_found_;
+    const std::string name = found.record.museum_number.empty() ? next_folder_ : found.record.museum_number;
+    const std::string asks = found.is_read ? filled(ui.text(Text::kNextIsThere), seen_line(name), found.scans)
+                                           : std::string(ui.text(Text::kNextIsThereUnread));
+    coloured_text(ui.colours.amber, asks.c_str());
+    ui.facts.insert("next-is-there");
+  }
+  if (confirmed(ui, "next-now", next_found_ ? Text::kGoOn : Text::kNextNow,
+                !next_folder_.empty() && may_leave())) {
+    const std::filesystem::path next = whole_name(session_.folder()).parent_path() / next_folder_;
+    const bool was_asked = next_found_.has_value();
+    // A session of another tablet is gone on with only when it was said which it is.
+    next_found_ = was_asked ? std::nullopt : session_found(next);
+    next_asked_for_ = next_folder_;
+    if (!next_found_) {
+      next_session_ = next;
+      ImGui::CloseCurrentPopup();
+    }
   }
   end_box(ui, "next-close");
 }

@@ -9,8 +9,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "station/next_session.h"
 #include "station/packing.h"
+#include "ui/operator/window_title.h"
 #include "ui/shell/give_back.h"
 #include "ui/shell/sound.h"
 #include "ui/view/pin_marks.h"
@@ -183,6 +183,10 @@ void OperatorScreen::draw(UiContext& ui, ImVec2 size) {
   act(statement, ui);
 }
 
+std::string OperatorScreen::title() const {
+  return window_title(state_.record.museum_number, session_.folder(), session_.device());
+}
+
 std::vector<ShownPin> OperatorScreen::pins_on_model() const {
   std::vector<ScanPose> poses;
   for (const LiveScan& scan : state_.scans) {
@@ -216,6 +220,7 @@ void OperatorScreen::open_package() {
 
 void OperatorScreen::open_next() {
   next_folder_ = next_session_name(session_.folder()).string();
+  next_found_.reset();
   open_next_ = true;
 }
 
@@ -291,7 +296,17 @@ void OperatorScreen::draw_model(UiContext& ui, ImVec2 size, bool asks_for_places
   ImDrawList* draw = ImGui::GetWindowDrawList();
   const ImVec2 end{origin.x + size.x, origin.y + size.y};
   draw->AddRectFilled(origin, end, packed(ui.colours.text, 0.06F), 6);
+  const bool simulated = is_simulated(session_.device());
+  const auto say_simulated = [&] {  // over whatever is shown
+    if (simulated) {
+      draw->AddText(ui.fonts.normal, ui.fonts.normal->FontSize,
+                    {origin.x + ui.px(0.5F), origin.y + ui.px(0.5F) + ui.fonts.small->FontSize},
+                    packed(ui.colours.amber), ui.text(Text::kSimulated), nullptr, size.x - ui.px(1));
+      ui.facts.insert("simulated");
+    }
+  };
   if (model_.empty()) {
+    say_simulated();
     const ImVec2 text = ImGui::CalcTextSize(ui.text(Text::kNoModelYet));
     draw->AddText({origin.x + 0.5F * (size.x - text.x), origin.y + 0.5F * size.y}, packed(ui.colours.faint),
                   ui.text(Text::kNoModelYet));
@@ -337,6 +352,7 @@ void OperatorScreen::draw_model(UiContext& ui, ImVec2 size, bool asks_for_places
   draw_pin_marks(ui, camera_, origin, size, pins_on_model());
   draw->AddText(ui.fonts.small, ui.fonts.small->FontSize, {origin.x + ui.px(0.5F), origin.y + ui.px(0.3F)},
                 packed(ui.colours.faint), ui.text(Text::kModel));
+  say_simulated();
   if (state_.red_map && !state_.red_map->conclusive) {
     const std::string red =
         filled(ui.text(Text::kRedArea), area_words(red_mm2(*state_.red_map), ui.preferences.language));

@@ -12,12 +12,14 @@
 #include <string>
 
 #include "station/live_session.h"
+#include "station/next_session.h"
 #include "station/shown_pins.h"
 #include "ui/gl/frame_target.h"
 #include "ui/operator/calibration_dialog.h"
 #include "ui/operator/camera_dialog.h"
 #include "ui/operator/device_dialog.h"
 #include "ui/operator/growing_picture.h"
+#include "ui/operator/map_areas.h"
 #include "ui/operator/pair_dialog.h"
 #include "ui/operator/pin_dialog.h"
 #include "ui/operator/pose_panel.h"
@@ -44,6 +46,8 @@ class OperatorScreen {
   [[nodiscard]] std::optional<std::chrono::steady_clock::time_point> profiles_since() const {
     return growing_.news_since();
   }
+  /// Of the window: which tablet, which session, which scanner.
+  [[nodiscard]] std::string title() const;
   /// Labelled pins and places on the rim, where the registered scans show them.
   [[nodiscard]] std::vector<ShownPin> pins_on_model() const;
   /// The session of the next tablet is wanted in place of this one; cleared by asking.
@@ -61,12 +65,6 @@ class OperatorScreen {
   void draw_statement(UiContext& ui, const Statement& statement, ImVec2 size);
   void draw_last_action(UiContext& ui, const Statement& statement, ImVec2 button);
   // side_columns.cpp
-  struct FaceState {
-    bool whole = false;  ///< nothing of it is missing
-    bool lacks = false;
-    std::string note;
-  };
-  [[nodiscard]] FaceState face_state(const UiContext& ui, Face face) const;
   void draw_face(UiContext& ui, Face which, const FaceState& face, Text name);
   void draw_faces(UiContext& ui);
   void draw_session_line(UiContext& ui);
@@ -81,6 +79,7 @@ class OperatorScreen {
   void draw_tablet(UiContext& ui);
   /// What a box is for, and of which tablet: its number, or where it is kept.
   [[nodiscard]] std::string title_of(const UiContext& ui, Text what) const;
+  void draw_excused(UiContext& ui);
   void draw_signing(UiContext& ui);
   void draw_package(UiContext& ui);
   void draw_next(UiContext& ui);
@@ -124,6 +123,8 @@ class OperatorScreen {
   std::string sign_name_, sign_role_, sign_incomplete_;
   bool sign_too_early_ = false;  ///< enter was pressed while a line lacked
   std::string package_folder_, next_folder_;
+  std::string next_asked_for_;              ///< the folder that next_found_ lies in
+  std::optional<FoundSession> next_found_;  ///< asked about before it is gone on with
   std::optional<std::filesystem::path> next_session_;
   bool open_sign_ = false, open_tablet_ = false, open_settings_ = false;
   bool open_package_ = false, open_next_ = false;

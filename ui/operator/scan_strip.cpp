@@ -154,6 +154,13 @@ void OperatorScreen::draw_strip(UiContext& ui, ImVec2 size) {
   if (state_.scans.empty()) {
     coloured_text(ui.colours.faint, ui.text(Text::kScans));
   }
+  // There is nothing above or below: the wheel goes along the scans.
+  if (const float turned = ImGui::GetIO().MouseWheel; turned != 0 && ImGui::IsWindowHovered()) {
+    ImGui::SetScrollX(std::clamp(ImGui::GetScrollX() - turned * width, 0.0F, ImGui::GetScrollMaxX()));
+  }
+  if (ImGui::GetScrollMaxX() > 0) {
+    ui.facts.insert(ImGui::GetScrollX() > 0 ? "strip-scrolled" : "strip-at-first");
+  }
   if (strip_scans_ != state_.scans.size()) {
     strip_scans_ = state_.scans.size();
     ImGui::SetScrollHereX(1.0F);

@@ -3,9 +3,8 @@
 // The columns beside the model: faces, tablet and machine on the left, the scan as it grows and the next turn
 // on the right.
 #include <algorithm>
-#include <cmath>
-#include <numeric>
 
+#include "ui/operator/before_signing.h"
 #include "ui/operator/operator_screen.h"
 #include "ui/shell/face_texts.h"
 #include "ui/shell/widgets.h"
@@ -14,35 +13,43 @@ namespace dubsar::ui {
 
 namespace {
 
-/// A tick, or an empty box, beside the colour: colour alone tells nothing to some.
-void draw_mark(const UiContext& ui, bool whole, bool lacks, float box) {
+Eigen::Vector4f colour_of(const UiContext& ui, const FaceState& face) {
+  return face.lacks ? ui.colours.red : face.excused ? ui.colours.amber : ui.colours.faint;
+}
+
+/// A tick, a box, or a box with a dash, beside the colour: colour alone tells nothing to some.
+void draw_mark(const UiContext& ui, const FaceState& face, float box) {
   const ImVec2 at = ImGui::GetCursorScreenPos();
   ImDrawList* draw = ImGui::GetWindowDrawList();
-  if (whole) {
+  if (face.whole) {
     draw->AddLine({at.x + 0.1F * box, at.y + 0.55F * box}, {at.x + 0.4F * box, at.y + 0.85F * box},
                   packed(ui.colours.good), 0.16F * box);
     draw->AddLine({at.x + 0.4F * box, at.y + 0.85F * box}, {at.x + 0.95F * box, at.y + 0.15F * box},
                   packed(ui.colours.good), 0.16F * box);
   } else {
     draw->AddRect({at.x + 0.1F * box, at.y + 0.15F * box}, {at.x + 0.9F * box, at.y + 0.9F * box},
-                  packed(lacks ? ui.colours.red : ui.colours.faint), 2, 0, 0.12F * box);
+                  packed(colour_of(ui, face)), 2, 0, 0.12F * box);
+    if (face.excused) {
+      draw->AddLine({at.x + 0.3F * box, at.y + 0.53F * box}, {at.x + 0.7F * box, at.y + 0.53F * box},
+                    packed(ui.colours.amber), 0.16F * box);
+    }
   }
   ImGui::Dummy({box, box});
   ImGui::SameLine();
 }
 
 /// Small, beside what was drawn last where it fits, else below it.
-void draw_note(const UiContext& ui, const std::string& note, bool lacks, float room_end, float indent) {
+void draw_note(const UiContext& ui, const FaceState& face, float room_end, float indent) {
   ImGui::PushFont(ui.fonts.small);
   ImGui::SameLine();
-  const bool beside = ImGui::GetCursorScreenPos().x + ImGui::CalcTextSize(note.c_str()).x < room_end;
+  const bool beside = ImGui::GetCursorScreenPos().x + ImGui::CalcTextSize(face.note.c_str()).x < room_end;
   if (beside) {
     ImGui::SetCursorPosY(ImGui::GetCursorPosY() + 0.2F * ui.fonts.small->FontSize);
   } else {
     ImGui::NewLine();
     ImGui::Indent(indent);
   }
-  coloured_text(lacks ? ui.colours.red : ui.colours.faint, note.c_str());
+  coloured_text(colour_of(ui, face), face.note.c_str());
   if (!beside) {
     ImGui::Unindent(indent);
   }
@@ -51,41 +58,19 @@ void draw_note(const UiContext& ui, const std::string& note, bool lacks, float r
 
 }  // namespace
 
-OperatorScreen::FaceState OperatorScreen::face_state(const UiContext& ui, Face face) const {
-  // While a hole gapes, a face without red may be one that nobody has looked at yet: no tick then.
-  constexpr double kSmallHoles = 0.05;
-  const double seen_mm2 = std::accumulate(state_.seen_mm2.begin(), state_.seen_mm2.end(), 0.0);
-  const bool small_holes = state_.red_map && red_mm2(*state_.red_map) < kSmallHoles * seen_mm2;
-  const double red = state_.red_map ? face_mm2(*state_.red_map, face, RegionState::kRed) : 0.0;
-  const double excused = state_.red_map ? face_mm2(*state_.red_map, face, RegionState::kExcused) : 0.0;
-  const auto f = static_cast<std::size_t>(face);
-  // A hole is listed under one face; its rim may run over others.
-  const bool known = state_.red_map && (state_.seen_mm2[f] > 0 || red > 0);
-  FaceState out;
-  out.whole = known && red <= 0 && (state_.red_map->conclusive || (small_holes && state_.red_points[f] == 0));
-  out.lacks = known && (red > 0 || state_.red_points[f] > 0) && !out.whole;
-  out.note = !known       ? ui.text(Text::kNoArea)
-             : red > 0    ? filled(ui.text(Text::kRedArea), area_words(red, ui.preferences.language))
-             : out.lacks  ? ui.text(Text::kRedRim)
-             : !out.whole ? ui.text(Text::kNoRedSoFar)
-                          : std::string();
-  if (excused > 0.05) {
-    out.note += (out.note.empty() ? "" : ", ") +
-                filled(ui.text(Text::kExcused), area_words(excused, ui.preferences.language));
-  }
-  return out;
-}
-
 /// Its mark and its name; a click turns the model to it.
 void OperatorScreen::draw_face(UiContext& ui, Face which, const FaceState& face, Text name) {
   ImGui::BeginGroup();
-  draw_mark(ui, face.whole, face.lacks, ImGui::GetTextLineHeight());
+  draw_mark(ui, face, ImGui::GetTextLineHeight());
   ImGui::TextUnformatted(ui.text(name));
   ImGui::EndGroup();
   if (ImGui::IsItemClicked()) {
     look_at(which);
   }
   ui.target(fmt::format("face.{}", to_string(which)));
+  if (face.whole || face.excused) {
+    ui.facts.insert(fmt::format("face.{}.{}", to_string(which), face.whole ? "whole" : "excused"));
+  }
 }
 
 /// All six are seen at once: where letters are too large for a line each, in short first.
@@ -98,7 +83,7 @@ void OperatorScreen::draw_faces(UiContext& ui) {
     ImGui::PushFont(ui.fonts.small);
     ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {ui.px(0.2F), 2});
     for (int k = 0; k < kFaceCount; ++k) {
-      const FaceState face = face_state(ui, static_cast<Face>(k));
+      const FaceState face = face_state(state_, static_cast<Face>(k), ui.preferences.wording());
       if (k % kInRow > 0) {
         ImGui::SameLine(left + static_cast<float>(k % kInRow) * wide);
       }
@@ -110,20 +95,23 @@ void OperatorScreen::draw_faces(UiContext& ui) {
   }
   ImGui::TextUnformatted(ui.text(Text::kChecklist));
   for (int k = 0; k < kFaceCount; ++k) {
-    const FaceState face = face_state(ui, static_cast<Face>(k));
+    const FaceState face = face_state(state_, static_cast<Face>(k), ui.preferences.wording());
     const float box = ImGui::GetTextLineHeight();
     draw_face(ui, static_cast<Face>(k), face, kFaceTexts[k]);
     if (!face.note.empty()) {
-      draw_note(ui, face.note, face.lacks, end, box + ImGui::GetStyle().ItemSpacing.x);
+      draw_note(ui, face, end, box + ImGui::GetStyle().ItemSpacing.x);
     }
   }
 }
 
 /// "Session whole". The stored checklist knows how it was; damage and loss since then are worse.
 void OperatorScreen::draw_session_line(UiContext& ui) {
-  const std::string damaged = damaged_scans(state_);
+  std::string damaged = damaged_scans(state_);
+  if (const std::string taken_out = damaged_scans_taken_out(state_); !taken_out.empty()) {
+    damaged += (damaged.empty() ? "" : ", ") + taken_out;
+  }
   const bool is_lost = !state_.lost_records.empty() || !scans_of_lost_records(state_).empty();
-  if (!state_.checklist && damaged.empty() && !is_lost) {
+  if (!state_.checklist && !is_damaged(state_) && !is_lost) {
     return;
   }
   ImGui::Separator();
@@ -134,12 +122,11 @@ void OperatorScreen::draw_session_line(UiContext& ui) {
     coloured_text(ui.colours.bad, filled(ui.text(Text::kStoreScansDamaged), damaged).c_str());
   } else if (is_lost) {
     coloured_text(ui.colours.amber, ui.text(Text::kStoreLost));
+  } else if (is_session_whole(state_)) {
+    coloured_text(ui.colours.good, ui.text(Text::kStoreWhole));
+    ui.facts.insert("session-whole");
   } else {
-    coloured_text(state_.checklist->store_whole ? ui.colours.good : ui.colours.bad,
-                  ui.text(state_.checklist->store_whole ? Text::kStoreWhole : Text::kStoreDamaged));
-    if (state_.checklist->store_whole) {
-      ui.facts.insert("session-whole");
-    }
+    coloured_text(ui.colours.bad, ui.text(Text::kStoreDamaged));
   }
   ImGui::PopFont();
 }

@@ -7,6 +7,8 @@
 
 #include "archive/seen_line.h"
 #include "station/session_faults.h"
+#include "ui/operator/before_signing.h"
+#include "ui/operator/map_areas.h"
 #include "ui/shell/widgets.h"
 
 namespace dubsar::ui {
@@ -43,19 +45,40 @@ bool add_warnings(Statement& out, const LiveState& state, Language language) {
   return warned > 0;
 }
 
-/// "4, 6"; as many as a headline takes.
-template <class Is>
-std::string numbers_of(const LiveState& state, const Is& is) {
-  constexpr int kMostNamed = 8;
-  std::string out;
-  int named = 0;
-  for (const LiveScan& scan : state.scans) {
-    if (scan.dropped || !is(scan) || named > kMostNamed) {
-      continue;
-    }
-    out += (out.empty() ? "" : ", ") + (named++ == kMostNamed ? "…" : std::to_string(scan.id));
+/// "7 scans are not judged yet: Finish judges them"; empty where all are.
+std::string unjudged_line(const LiveState& state, Language language) {
+  const int count = unjudged_scans(state);
+  return count == 0   ? std::string()
+         : count == 1 ? text_of(Text::kUnjudgedScan, language)
+                      : filled(text_of(Text::kUnjudgedScans, language), count);
+}
+
+/// What is to be read before a name goes under a verdict that is conclusive: the worst has the headline.
+void say_conclusive(Statement& out, const LiveState& state, Language language) {
+  const bool warned = add_warnings(out, state, language);
+  const double excused = excused_mm2(*state.red_map);
+  const bool damaged = is_damaged(state);
+  out.headline = damaged  ? text_of(Text::kConclusiveDamaged, language)
+                 : warned ? text_of(Text::kConclusiveBut, language)
+                 : excused > 0
+                     ? filled(text_of(Text::kConclusiveExcused, language), area_words(excused, language))
+                     : text_of(Text::kConclusive, language);
+  out.tone = damaged ? Tone::kWarn : warned || is_much_excused(state) ? Tone::kAsk : Tone::kGood;
+  if (const std::string sides = excused_sides(*state.red_map, language); !sides.empty()) {
+    add_sentence(out.detail, sides);
   }
-  return out;
+  out.may_sign = true;
+}
+
+/// A scan that was taken out is damaged: it takes no part, and yet what is signed is not whole.
+void add_damaged_taken_out(Statement& out, const LiveState& state, Language language) {
+  const std::string scans = damaged_scans_taken_out(state);
+  if (!scans.empty()) {
+    add_sentence(out.detail, filled(text_of(Text::kDamagedTakenOut, language), scans));
+  }
+  if (is_damaged(state)) {
+    add_sentence(out.detail, text_of(Text::kDamagedOrReason, language));
+  }
 }
 
 /// What of the session is damaged, lost or void: on every opening, and before anything is signed. What ended
@@ -230,7 +253,9 @@ void say_still(Statement& out, const LiveState& state, bool has_device, Wording 
                                      ? filled(text_of(Text::kBrokenOff, language), state.broken_off_rows)
                                      : std::string();
   out.may_scan = has_device;
-  const bool conclusive = any && state.red_map && state.red_map->conclusive && state.verdict_kept;
+  const std::string unjudged = any ? unjudged_line(state, language) : std::string();
+  const bool conclusive =
+      any && state.red_map && state.red_map->conclusive && state.verdict_kept && unjudged.empty();
   out.may_pack = any && state.signed_off;
   if (any && state.signed_off) {  // another scan would undo the signature, or be of the next tablet
     out.may_scan = false;
@@ -243,7 +268,10 @@ void say_still(Statement& out, const LiveState& state, bool has_device, Wording 
     out.detail = translated(*state.error, language);
     out.scan_label = out.may_next ? Text::kNextTablet : Text::kGoOn;
     out.may_sign = conclusive && !state.signed_off;
-    out.may_finish = lacks_verdict(state);
+    out.may_finish = lacks_verdict(state) || !unjudged.empty();
+    if (!unjudged.empty()) {
+      add_sentence(out.detail, unjudged + ".");
+    }
   } else if (!has_device) {
     out.headline = text_of(Text::kChooseDevice, language);
     out.tone = Tone::kAsk;
@@ -268,11 +296,19 @@ void say_still(Statement& out, const LiveState& state, bool has_device, Wording 
       add_sentence(out.detail, text_of(Text::kSignedIncomplete, language));
     }
     out.tone = conclusive ? Tone::kGood : Tone::kAsk;
+  } else if (!unjudged.empty()) {  // what is red by the lack of them is not to be scanned first
+    out.headline = unjudged;
+    out.detail = text_of(Text::kUnjudgedHow, wording);
+    if (!broken_off.empty()) {
+      add_sentence(out.detail, broken_off);
+    }
+    out.tone = Tone::kAsk;
+    out.scan_label = Text::kGoOn;
+    out.may_finish = true;
+    add_damaged_taken_out(out, state, language);
   } else if (conclusive) {
-    const bool warned = add_warnings(out, state, language);
-    out.headline = text_of(warned ? Text::kConclusiveBut : Text::kConclusive, language);
-    out.tone = warned ? Tone::kAsk : Tone::kGood;
-    out.may_sign = true;
+    say_conclusive(out, state, language);
+    add_damaged_taken_out(out, state, language);
   } else {
     // A map that knows of no red yet is one of scans that are not judged.
     const double red = state.red_map && !state.red_map->conclusive ? red_mm2(*state.red_map) : 0.0;
@@ -290,63 +326,12 @@ void say_still(Statement& out, const LiveState& state, bool has_device, Wording 
       add_sentence(out.detail, turn + ".");
     }
     add_warnings(out, state, language);
+    add_damaged_taken_out(out, state, language);
   }
   say_faults(out, state, has_device, conclusive, language);
 }
 
 }  // namespace
-
-std::optional<int> copy_of(const LiveState& state, const LiveScan& scan) {
-  const bool counts = !scan.dropped && scan.pose && scan.pose->status == PoseStatus::kRegistered;
-  return counts && state.red_map ? copied_from(state.red_map->copies, scan.id) : std::nullopt;
-}
-
-const LiveScan* newest_standing(const LiveState& state) {
-  const auto last = std::ranges::find_if(state.scans.rbegin(), state.scans.rend(),
-                                         [](const LiveScan& scan) { return !scan.dropped; });
-  return last == state.scans.rend() ? nullptr : &*last;
-}
-
-std::string scan_warning(const LiveScan& scan, Language language) {
-  if (scan.dropped || !scan.pose || scan.pose->status != PoseStatus::kRegistered ||
-      scan.pose->warning.empty()) {
-    return {};
-  }
-  return filled(text_of(Text::kScanSays, language), scan.id, translated(scan.pose->warning, language));
-}
-
-std::string damaged_scans(const LiveState& state) {
-  return numbers_of(state, [](const LiveScan& scan) { return scan.damaged; });
-}
-
-std::string scans_of_lost_records(const LiveState& state) {
-  return numbers_of(state, [](const LiveScan& scan) { return scan.record_lost; });
-}
-
-std::string place_words(const LiveScan& scan, Language language) {
-  const bool is_known = scan.pose && scan.pose->status == PoseStatus::kRegistered && scan.pose->sigma_mm > 0;
-  return is_known ? filled(text_of(Text::kUncertainty, language), 1000 * scan.pose->sigma_mm) : std::string();
-}
-
-std::string area_words(double mm2, Language language) {
-  return mm2 < 0.05 ? decimal("< 0.1", language) : decimal(mm2, 1, language);
-}
-
-double red_mm2(const RedMap& map) {
-  double sum = 0;
-  for (int face = 0; face < kFaceCount; ++face) {
-    sum += face_mm2(map, static_cast<Face>(face), RegionState::kRed);
-  }
-  return sum;
-}
-
-double face_mm2(const RedMap& map, Face face, RegionState state) {
-  double sum = 0;
-  for (const RedRegion& region : map.regions) {
-    sum += region.face == face && region.state == state ? region.area_mm2 : 0.0;
-  }
-  return sum;
-}
 
 Statement statement_of(const LiveState& state, bool has_device, Wording wording) {
   const Language language = wording.language;

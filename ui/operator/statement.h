@@ -42,19 +42,8 @@ struct Statement {
 /// What is wrong with a scan although it is in the model, as a sentence; empty where nothing is.
 [[nodiscard]] std::string scan_warning(const LiveScan& scan, Language language);
 
-/// The scans that stand and cannot be read: "4, 6"; empty where all can. What is many ends in "…".
-[[nodiscard]] std::string damaged_scans(const LiveState& state);
-/// Likewise those that stand and may have been taken out, since records of them are lost.
-[[nodiscard]] std::string scans_of_lost_records(const LiveState& state);
-
 /// How well it is known where the scan lies; empty where that is not in question: it is not registered, or it
 /// gives the frame itself.
 [[nodiscard]] std::string place_words(const LiveScan& scan, Language language);
-
-/// "0.5"; "< 0.1" where rounding would leave nothing of it.
-[[nodiscard]] std::string area_words(double mm2, Language language);
-/// mm² that are red, and of one face of it.
-[[nodiscard]] double red_mm2(const RedMap& map);
-[[nodiscard]] double face_mm2(const RedMap& map, Face face, RegionState state);
 
 }  // namespace dubsar::ui

@@ -102,6 +102,29 @@ constexpr EnginePhrase kRemarks[] = {
     {" mm large, perhaps its numbers are ", " mm groß, vielleicht sind seine Zahlen in "},
     {"dubsar mesh convert --unit ", "noch einmal in Millimetern ausgeben, nicht in "},
     {" makes millimetres of them", ""},
+    // why a place is excused
+    {"no pose that the rig allows has it within its field, unshaded for laser and camera, at a slope below "
+     "70°",
+     "keine Stellung, die das Gerät erlaubt, hat es im Messfeld, für Laser und Kamera frei, unter weniger "
+     "als "
+     "70° Neigung"},
+    {" scans looked straight at it, each from elsewhere, and brought no dense samples: too dark, too shiny, "
+     "too deep or no surface",
+     " Scans sahen gerade darauf, jeder von anderswo, und brachten keine dichten Messpunkte: zu dunkel, zu "
+     "glänzend, zu tief oder keine Fläche"},
+    {" scans and more might have sampled it and did not, and no other pose promises to",
+     " Scans und mehr hätten es erfassen können und taten es nicht, und keine andere Stellung verspricht es"},
+    {"speck: scans looked straight at it and found nothing more",
+     "Fleck: Scans sahen gerade darauf und fanden nichts weiter"},
+    {"speck: the gap is no larger than the rule of 3µ lets pass, and closes in a straight line",
+     "Fleck: die Lücke ist nicht größer, als die Regel von 3µ durchlässt, und schließt sich geradlinig"},
+    {"speck: no view is expected to clear as much as one such speck",
+     "Fleck: keine Ansicht brächte voraussichtlich so viel wie ein solcher Fleck"},
+    {"slit or pit of less than a wedge's size: ", "Spalt oder Grube, kleiner als ein Keil: "},
+    {"gives no signal, look at it: ", "gibt kein Signal, ansehen: "},
+    {"gap of ", "Lücke von "},
+    {" mm; its surroundings bend by ", " mm; ihre Umgebung weicht um "},
+    {" µm from a quadric, interpolation good to ", " µm von einer Quadrik ab, gefüllt auf "},
     // what the checklist warns of, and when to stop
     {"its samples scatter by ", "seine Messpunkte streuen um "},
     {" µm, half of the other scans by no more than ", " µm, die Hälfte der anderen Scans um höchstens "},

@@ -11,13 +11,15 @@ namespace {
 
 constexpr TextRow kInBlue[] = {
     {Text::kStillRed, "{} mm² are still blue: scan on", "{} mm² sind noch blau: weiter scannen"},
+    {Text::kUnjudgedHow, "They may hold what is blue on the model: judge first, then scan.",
+     "Was auf dem Modell blau ist, kann auf ihnen sein: erst beurteilen, dann scannen."},
     {Text::kThenScan, "Then scan. What is blue on the model is still missing.",
      "Dann scannen. Was auf dem Modell blau ist, fehlt noch."},
     {Text::kScanTheRed, "Turn what is still blue towards the camera, then scan",
      "Was noch blau ist, zur Kamera drehen, dann scannen"},
     {Text::kRedArea, "{} mm² blue", "{} mm² blau"},
     {Text::kRedRim, "blue at its rim", "blau am Rand"},
-    {Text::kNoRedSoFar, "no blue so far", "nichts blau"},
+    {Text::kNoRedSoFar, "no blue so far", "bisher nichts blau"},
 };
 
 }  // namespace
