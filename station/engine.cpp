@@ -62,7 +62,7 @@ Status Engine::Impl::settle(EngineResult& result, JobContext& job) {
     return std::unexpected(red_map.error());
   }
   result.red_map = std::move(*red_map);
-  emit(RedMapChanged{result.red_map, std::nullopt, result.red_map.conclusive});
+  emit(RedMapChanged{result.red_map, std::nullopt});
   if (const Status stitched = planning.stitch(job); !stitched) {
     return stitched;
   }
@@ -109,15 +109,13 @@ Result<bool> Engine::Impl::run_round(NextStep step, EngineResult& result, JobCon
     const std::scoped_lock lock(mutex);
     return finish_asked;
   }();
-  const bool goes_on = !enough && drives && !device_error && stored_count < options.max_scans &&
-                       !result.red_map.conclusive && !result.red_map.next.empty() &&
-                       result.red_map.next.front().placement;
+  const bool goes_on = !enough && drives && !device_error && !has_all_scans() && !result.red_map.conclusive &&
+                       !result.red_map.next.empty() && result.red_map.next.front().placement;
   return goes_on;
 }
 
 Result<EngineResult> Engine::Impl::run(JobContext& job) {
   if (const Status opened = open(job); !opened) {
-    tell_unheeded();
     return std::unexpected(opened.error());
   }
   settle_undoing();
@@ -136,7 +134,7 @@ Result<EngineResult> Engine::Impl::run(JobContext& job) {
     // How the tablet lies is known only once this run has scanned it.
     step = stored_count > resumed_count ? step_to(result.red_map) : std::nullopt;
   }
-  if (drives && stored_count >= options.max_scans && !result.red_map.conclusive) {
+  if (drives && has_all_scans() && !result.red_map.conclusive) {
     emit(Notice{fmt::format("{} scans are there, as many as were to be taken; --max-scans allows more",
                             stored_count)});
   }
@@ -161,6 +159,9 @@ Result<EngineResult> Engine::run(JobContext& job) {
   {
     const std::scoped_lock lock(impl_->mutex);
     impl_->takes_commands = false;
+  }
+  if (!result) {
+    impl_->tell_unheeded();
   }
   if (impl_->source && impl_->store) {
     impl_->change_settings();  // those that came behind the last scan

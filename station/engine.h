@@ -27,7 +27,7 @@ struct EngineOptions {
   std::string device;             ///< URI
   std::filesystem::path session;  ///< folder; made when it is not there, gone on with when it is
   bool automatic = false;         ///< drive the rig (or ask for hand turns) until conclusive
-  int max_scans = 0;              ///< of the whole session; 0: no limit (40 when automatic)
+  int max_scans = 0;              ///< of the whole session; 0: no limit (40 when automatic and not paced)
   std::optional<PinSet> pins;
   std::optional<RigLimits> limits = {};         ///< narrower than the device's own, from a file
   std::string limits_file = {};                 ///< for what is said about them

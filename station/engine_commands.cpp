@@ -115,6 +115,19 @@ bool Engine::Impl::hold_locks(JobContext& job) {
   return settled.placed;
 }
 
+void Engine::Impl::take_back_pages() {
+  if (const Status taken = take_pages_back_once(*store, "something was said of its scans", kPlan); !taken) {
+    emit(Notice{taken.error().line()});
+  }
+}
+
+bool Engine::Impl::stands(int id) const {
+  const auto stored = store->scans();
+  return !stored || std::ranges::any_of(*stored, [&](const StoredScan& scan) {
+    return !scan.dropped && (scan.id == id || id < 0);
+  });
+}
+
 Result<StationScan> Engine::Impl::bring_back(int id, JobContext& job) {
   const auto stored = store->scans();
   if (!stored) {
@@ -123,6 +136,9 @@ Result<StationScan> Engine::Impl::bring_back(int id, JobContext& job) {
   const auto scan = std::ranges::find(*stored, id, &StoredScan::id);
   if (scan != stored->end() && !scan->dropped) {
     return fail(ErrorKind::kUsage, "scan " + std::to_string(id) + " was not taken out");
+  }
+  if (scan != stored->end()) {
+    take_back_pages();
   }
   if (const Status restored = store->restore_scan(id); !restored) {
     return std::unexpected(restored.error());
@@ -133,6 +149,9 @@ Result<StationScan> Engine::Impl::bring_back(int id, JobContext& job) {
 
 Result<std::vector<StationScan>> Engine::Impl::label_pins(const LabelPins& command, std::string& what,
                                                           JobContext& job) {
+  if (stands(command.id)) {
+    take_back_pages();
+  }
   if (const Status kept = keep_pin_labels(*store, command.id, command.tips, command.tip_diameter_mm); !kept) {
     return std::unexpected(kept.error());
   }
@@ -181,6 +200,9 @@ Result<std::vector<StationScan>> Engine::Impl::obey(const OperatorCommand& comma
   if (const auto* drop = std::get_if<DropScan>(&command)) {
     int id = drop->id;
     Status dropped;
+    if (stands(id)) {
+      take_back_pages();
+    }
     if (id < 0) {
       const auto newest = store->undo_last_scan();
       if (!newest || !*newest) {
@@ -198,6 +220,9 @@ Result<std::vector<StationScan>> Engine::Impl::obey(const OperatorCommand& comma
     return done(dropped, id, "is taken out");
   }
   if (const auto* retake = std::get_if<ScanAgain>(&command)) {
+    if (stands(retake->id)) {
+      take_back_pages();
+    }
     const Status dropped = store->drop_scan(retake->id, "to be scanned again");
     if (dropped) {
       registrar.remove(retake->id, job);
@@ -216,6 +241,9 @@ Result<std::vector<StationScan>> Engine::Impl::obey(const OperatorCommand& comma
   }
   if (const auto* hint = std::get_if<HintScan>(&command)) {
     const Result<PoseHint> settled = settled_hint(*store, hint->id, hint->given);
+    if (settled) {
+      take_back_pages();
+    }
     Status status = settled ? record_hint(*store, hint->id, *settled) : std::unexpected(settled.error());
     if (status) {
       word.hints[hint->id] = *settled;
@@ -227,6 +255,7 @@ Result<std::vector<StationScan>> Engine::Impl::obey(const OperatorCommand& comma
     if (!word.hints.contains(withdraw->id)) {
       return fail(ErrorKind::kUsage, "there is no hint for scan " + std::to_string(withdraw->id));
     }
+    take_back_pages();
     const Status status = record_hint_withdrawn(*store, withdraw->id);
     if (status) {
       word.hints.erase(withdraw->id);
@@ -236,6 +265,9 @@ Result<std::vector<StationScan>> Engine::Impl::obey(const OperatorCommand& comma
   }
   if (const auto* lock = std::get_if<LockScan>(&command)) {
     const Result<ScanLock> here = lock_here(*store, lock->id);
+    if (here) {
+      take_back_pages();
+    }
     const Status status = here ? record_lock(*store, lock->id, *here) : std::unexpected(here.error());
     if (status) {
       registrar.set_locked(lock->id, true);
@@ -250,6 +282,7 @@ Result<std::vector<StationScan>> Engine::Impl::obey(const OperatorCommand& comma
   if (!word.locked.contains(id)) {
     return fail(ErrorKind::kUsage, "scan " + std::to_string(id) + " is not locked");
   }
+  take_back_pages();
   const Status status = record_unlock(*store, id);
   if (status) {
     registrar.set_locked(id, false);
@@ -274,9 +307,6 @@ void Engine::Impl::obey_commands(JobContext& job) {
       const Status kept = keep_tablet_record(*store, describe->record);
       emit(Notice{kept ? "what is said of the tablet is kept" : kept.error().line()});
       continue;
-    }
-    if (const Status taken = take_pages_back_once(*store, "something was said of its scans", kPlan); !taken) {
-      emit(Notice{taken.error().line()});
     }
     std::string what;
     Result<std::vector<StationScan>> obeyed = obey(command, what, job);

@@ -69,6 +69,13 @@ void Engine::Impl::change_settings() {
   }
 }
 
+void Engine::Impl::end_view() {
+  if (stream) {
+    stream.reset();
+    emit(CameraFrame{});
+  }
+}
+
 bool Engine::Impl::show_camera() {
   bool wanted = false;
   {
@@ -76,10 +83,7 @@ bool Engine::Impl::show_camera() {
     wanted = watch_asked;
   }
   if (!wanted) {
-    if (stream) {
-      stream.reset();
-      emit(CameraFrame{});
-    }
+    end_view();
     return false;
   }
   if (!stream) {
@@ -87,8 +91,7 @@ bool Engine::Impl::show_camera() {
   }
   if (const Status shown = stream->show(); !shown) {
     emit(Notice{shown.error().line()});
-    stream.reset();
-    emit(CameraFrame{});
+    end_view();
     const std::scoped_lock lock(mutex);
     watch_asked = false;
     return false;

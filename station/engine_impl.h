@@ -115,11 +115,12 @@ class StageClock {
 };
 
 /// The state of a run. What a stage thread alone touches is marked; the rest stands still while the threads
-/// run, or is under the mutex. engine_open.cpp opens device and session, engine_stages.cpp has the four
-/// threads, engine_motion.cpp what moves, engine_misses.cpp what is done about scans that are not taken up,
-/// engine_pace.cpp what waits for the operator, engine_device.cpp what is set and seen of the device,
-/// engine_origin.cpp what the session keeps of what it was scanned with, engine_commands.cpp what the
-/// operator asks for meanwhile, engine_results.cpp what is made at the end, engine.cpp the order of it all.
+/// run, or is under the mutex. engine_open.cpp opens device and session, engine_taking.cpp has the thread
+/// that takes the scans of the device, engine_stages.cpp the three behind it, engine_motion.cpp what moves,
+/// engine_misses.cpp what is done about scans that are not taken up, engine_pace.cpp what waits for the
+/// operator, engine_device.cpp what is set and seen of the device, engine_origin.cpp what the session keeps
+/// of what it was scanned with, engine_commands.cpp what the operator asks for meanwhile, engine_results.cpp
+/// what is made at the end, engine.cpp the order of it all.
 struct Engine::Impl {
   EngineOptions options;
   EventSink sink;
@@ -182,7 +183,6 @@ struct Engine::Impl {
   bool halt_asked = false;
   bool scan_asked = false;    ///< of a paced run: ScanNow since the last scan
   bool finish_asked = false;  ///< of a paced run: Finish
-  bool scanning = false;      ///< of a paced run: the device has what it takes to the next scan
   bool keeps_half = false;    ///< KeepHalfScan
   std::vector<ChangeSetting> settings_asked;
   bool watch_asked = false;              ///< WatchCamera
@@ -204,9 +204,14 @@ struct Engine::Impl {
       sink(event);
     }
   }
+  /// As many as were to be taken; while no thread of a round runs.
+  [[nodiscard]] bool has_all_scans() const {
+    return options.max_scans > 0 && stored_count >= options.max_scans;
+  }
   StageClock clock(const char* stage) { return {seconds, mutex, stage}; }
 
-  /// The first error ends the run; everything that is in the queues behind it still gets through.
+  /// The first error ends the run; everything that is in the queues behind it still gets through. Only in a
+  /// round: what fails while the session is opened is returned.
   void give_up(const Error& error) {
     bool half_comes = false;
     {
@@ -229,6 +234,9 @@ struct Engine::Impl {
   Status open(JobContext& job);
   Status load_resumed(JobContext& job);
   void acquire(NextStep step, JobContext& job);
+  void take_scans(NextStep step, JobContext& job);
+  /// Before anything moves or lights for the next scan.
+  void tell_start(const NextStep& step) const;
   /// Of a paced run: waits until the operator wants the scan; `step` follows what they ask for meanwhile.
   /// False when they want no more. engine_pace.cpp
   bool wait_for_operator(NextStep& step, const JobContext& job);
@@ -237,12 +245,12 @@ struct Engine::Impl {
   /// Thinks for as long as somebody holds it.
   std::shared_ptr<void> begin_thought();
   [[nodiscard]] bool must_wait(const NextStep& step) const;  ///< under the mutex
-  void end_scanning();
   void show_model(JobContext& job);
   // engine_device.cpp
   Status open_settings();  ///< puts what the session keeps and what the options say, and tells the panel
   void change_settings();  ///< those that were asked for; of the acquiring thread
   bool show_camera();      ///< a frame, where one is asked for; false when none is
+  void end_view();         ///< no frame is shown any more
   void tell_panel();
   // engine_origin.cpp
   /// Of a session without a scan: that it goes on with this device.
@@ -299,7 +307,7 @@ struct Engine::Impl {
   void keep_stored();
   bool is_known(const RangeGrid& grid);
   bool hand_to_store(RawScan scan);  ///< false when nothing is stored any more
-  void note_drive(int id, const Placement& drive);
+  Status note_drive(int id, const Placement& drive);
   /// Onto the disk, and only then reported; false when it is not there.
   bool store_scan(int id, const RangeGrid& grid, const std::optional<Placement>& drive,
                   const std::string& remark);
@@ -312,9 +320,8 @@ struct Engine::Impl {
                                JobContext& job);
   void plan_all(JobContext& job);
   /// Of a paced run with a device that nothing drives and that has no end: ends it once nothing is left to
-  /// do, but not before it has taken the scan that was asked for. True where no scan is under way any
-  /// more.
-  bool end_conclusive(const RedMap& red_map, const ScanToPlan& item);
+  /// do, but not before it has taken the scan that was asked for.
+  void end_conclusive(const RedMap& red_map, const ScanToPlan& item);
   void tell_foreign();  ///< what the planning stage has left out of scans, once of each
   std::vector<ScanPose> named_poses() const;
   [[nodiscard]] ScanPose judged(ScanPose pose) const;  ///< by what the model can hold
@@ -323,7 +330,10 @@ struct Engine::Impl {
   /// The scans that came in by it, in place of what was there of them.
   Result<std::vector<StationScan>> obey(const OperatorCommand& command, std::string& what, JobContext& job);
   Result<StationScan> bring_back(int id, JobContext& job);
-  Status read_word();  ///< and by which locks the model still stands fast
+  /// Before what a command says is stored; one that is refused leaves them.
+  void take_back_pages();
+  [[nodiscard]] bool stands(int id) const;  ///< not where it was taken out, or there is no such scan
+  Status read_word();                       ///< and by which locks the model still stands fast
   /// Fixes what is locked and is not fixed yet. True when that brought a scan into place.
   bool hold_locks(JobContext& job);
   /// Takes a stored scan in once more, as the pins are known now.
@@ -332,7 +342,7 @@ struct Engine::Impl {
   [[nodiscard]] std::optional<PinSet> known_pins() const;
   /// What is to be undone is of the scans that there are now, not of one that comes before it is obeyed.
   void settle_undoing();
-  /// Where the scanner did not open: of words that nobody heeds.
+  /// Where the run failed or was stopped: of words that nobody heeds. None are taken any more.
   void tell_unheeded();
   bool close_commands();  ///< false when some came at the last moment: they are still to be obeyed
   Result<bool> run_round(NextStep step, EngineResult& result, JobContext& job);

@@ -158,11 +158,9 @@ NextStep Engine::Impl::step_to(const RedMap& red_map) const {
   return step;
 }
 
-void Engine::Impl::note_drive(int id, const Placement& drive) {
+Status Engine::Impl::note_drive(int id, const Placement& drive) {
   drives_of_scans[id] = drive;
-  if (const Status saved = store->save_document("drives", drives_to_json(drives_of_scans)); !saved) {
-    give_up(saved.error());
-  }
+  return store->save_document("drives", drives_to_json(drives_of_scans));
 }
 
 }  // namespace dubsar

@@ -107,13 +107,11 @@ Status Engine::Impl::store_left_rows(const RangeGrid& rows, const LeftScan& left
   if (!id) {
     return std::unexpected(id.error());
   }
-  if (left.drive) {
-    note_drive(*id, *left.drive);
-  }
-  emit(ScanStored{*id, rows.source, static_cast<std::int64_t>(rows.valid_count()), left.remark});
+  const Status noted = left.drive ? note_drive(*id, *left.drive) : Status();
+  emit(ScanStored{*id, rows.source, static_cast<std::int64_t>(rows.valid_count()), left.remark, true});
   emit(Notice{
       fmt::format("a scan in whose middle the program ended is kept: {} rows, as scan {}", rows.rows, *id)});
-  return keep_origin_of_left_rows();
+  return noted ? keep_origin_of_left_rows() : noted;
 }
 
 void Engine::Impl::take_up_left_scans() {
@@ -160,10 +158,11 @@ Status Engine::Impl::open(JobContext& job) {
     emit(Notice{*reminder});
   }
   drives = options.automatic && source->capabilities().can_place;
+  const bool is_paced = options.paced;
   // Nothing moves, and no laser goes on, before somebody has said that the tablet is turned.
-  waits_for_hands_alone = options.automatic && !options.paced && !turns_its_own_tablet(source->uri());
-  options.paced = options.paced || waits_for_hands_alone;
-  if (drives && options.max_scans <= 0) {
+  waits_for_hands_alone = options.automatic && !is_paced && !turns_its_own_tablet(source->uri());
+  options.paced = is_paced || waits_for_hands_alone;
+  if (drives && options.max_scans <= 0 && !is_paced) {  // else who looks at the window says when it ends
     options.max_scans = kAutomaticScans;
   }
   if (const Status limited = limit_rig(); !limited) {

@@ -137,7 +137,7 @@ Status Engine::Impl::judge_by_kept_rig(EngineResult& result, JobContext& job) {
     return std::unexpected(red_map.error());
   }
   result.red_map = std::move(*red_map);
-  emit(RedMapChanged{result.red_map, std::nullopt, result.red_map.conclusive});
+  emit(RedMapChanged{result.red_map, std::nullopt});
   return {};
 }
 

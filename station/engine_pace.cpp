@@ -33,9 +33,9 @@ bool Engine::Impl::wait_for_operator(NextStep& step, const JobContext& job) {
   }
   // Whatever ends the waiting, the camera is the scan's then.
   struct EndOfView {
-    std::unique_ptr<CameraStream>& stream;
-    ~EndOfView() { stream.reset(); }
-  } const end_of_view{stream};
+    Engine::Impl& engine;
+    ~EndOfView() { engine.end_view(); }
+  } const end_of_view{*this};
   std::unique_lock lock(mutex);
   bool told = false;
   bool changed = false;
@@ -59,7 +59,7 @@ bool Engine::Impl::wait_for_operator(NextStep& step, const JobContext& job) {
     }
     if (settled && ((told && scan_asked) || !(changed || must_wait(step)))) {
       scan_asked = false;
-      asked_once = scanning = true;
+      asked_once = true;
       return true;
     }
     if (settled && !told) {
@@ -88,12 +88,7 @@ bool Engine::Impl::wait_for_operator(NextStep& step, const JobContext& job) {
   }
 }
 
-void Engine::Impl::end_scanning() {
-  const std::scoped_lock lock(mutex);
-  scanning = false;
-}
-
-bool Engine::Impl::end_conclusive(const RedMap& red_map, const ScanToPlan& item) {
+void Engine::Impl::end_conclusive(const RedMap& red_map, const ScanToPlan& item) {
   const std::scoped_lock lock(mutex);
   const bool is_due = options.first_scan_waits || (asked_once && !item.resumed);
   const bool ends = red_map.conclusive && is_due && !item.view_of;  // that one is to be taken again
@@ -102,8 +97,6 @@ bool Engine::Impl::end_conclusive(const RedMap& red_map, const ScanToPlan& item)
     changed_step.emplace(std::nullopt);
   }
   pace.notify_all();
-  // What was said meanwhile may take the verdict back: then there is more to wait for.
-  return ends && !scanning && commands.empty() && thoughts == (item.thought ? 1 : 0);
 }
 
 void Engine::Impl::show_model(JobContext& job) {

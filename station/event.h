@@ -36,6 +36,8 @@ struct ScanStored {
   std::string file;
   std::int64_t samples = 0;
   std::string remark{};  ///< of its device, for the operator; empty where there is none
+  /// Its device may be at the next one by now: none waits for what is made of this one.
+  bool scans_on = false;
 };
 /// A scan that the engine has dropped by itself: what was in its way.
 struct SetAside {
@@ -62,7 +64,14 @@ struct OperatorObeyed {
 struct RedMapChanged {
   RedMap red_map;
   std::optional<ViewGain> gain;  ///< of the scan that changed it
-  bool ends_run = false;         ///< no scan is under way, and none is taken any more
+};
+/// The device begins with what it takes to the next scan, where no NextPlacement says so: motors may run, if
+/// only to their switches, and lasers go on. Nothing has moved yet.
+struct DeviceStarts {};
+/// The device rests: no scan is under way, and none is taken any more, unless a DeviceStarts, a NextPlacement
+/// or a WaitsForOperator follows (what is settled may be red still).
+struct DeviceRests {
+  std::optional<Error> error{};  ///< of the device, or of what it was asked for: what ended the scanning
 };
 /// The rig is about to be moved, or the operator is asked for a turn.
 struct NextPlacement {
@@ -97,9 +106,9 @@ struct Notice {
   std::string text;
 };
 
-using Event =
-    std::variant<ProfileArrived, ScanStored, ScanPlaced, OperatorObeyed, RedMapChanged, NextPlacement,
-                 WaitsForOperator, ModelChanged, PinsKnown, DeviceTells, CameraFrame, Notice>;
+using Event = std::variant<ProfileArrived, ScanStored, ScanPlaced, OperatorObeyed, RedMapChanged,
+                           DeviceStarts, DeviceRests, NextPlacement, WaitsForOperator, ModelChanged,
+                           PinsKnown, DeviceTells, CameraFrame, Notice>;
 
 /// Called on the engine's threads, one call at a time per stage: be quick, take snapshots, and never call
 /// back into the engine.

@@ -144,8 +144,9 @@ void LiveSession::hear(const Event& event) {
       scan.note = one.why;
       scan.pose.reset();
     }
-    // The notice of what was set aside came before.
-    if (placed->pose.status == PoseStatus::kRegistered && placed->set_aside.empty()) {
+    // The notice of what was set aside came before, and so did that of what ended the scanning.
+    const bool tells_end = state_.phase == LivePhase::kFinishing && state_.error;
+    if (placed->pose.status == PoseStatus::kRegistered && placed->set_aside.empty() && !tells_end) {
       state_.notice.clear();
     }
     // The scan's own remark stays until another scan comes.
@@ -175,8 +176,8 @@ void LiveSession::hear(const Event& event) {
         state_.notice = remark_line(scan);
       }
       state_.exists = true;
-      // A device that nothing drives waits for the operator while its scan is still being judged.
-      if (state_.phase != LivePhase::kWaiting) {
+      // A device that nothing drives waits for the operator, or scans, while its scan is still being judged.
+      if (!stored->scans_on && state_.phase != LivePhase::kWaiting && state_.phase != LivePhase::kFinishing) {
         state_.phase = LivePhase::kJudging;
       }
     } else if (const auto* obeyed = std::get_if<OperatorObeyed>(&event)) {
@@ -194,8 +195,16 @@ void LiveSession::hear(const Event& event) {
     } else if (const auto* red_map = std::get_if<RedMapChanged>(&event)) {
       state_.red_map = std::make_shared<const RedMap>(red_map->red_map);
       state_.verdict_kept = false;  // until the run has ended well
-      if (red_map->ends_run) {
+    } else if (std::holds_alternative<DeviceStarts>(event)) {
+      state_.next.reset();
+      state_.phase = LivePhase::kMoving;
+    } else if (const auto* rests = std::get_if<DeviceRests>(&event)) {
+      if (!job_->cancelled()) {  // else nothing is made of what there is
         state_.phase = LivePhase::kFinishing;
+      }
+      if (rests->error) {  // what came behind it, of the half scan perhaps, hides no reason
+        state_.error = rests->error;
+        state_.notice = rests->error->line();
       }
     } else if (const auto* next = std::get_if<NextPlacement>(&event)) {
       state_.next = next->view;

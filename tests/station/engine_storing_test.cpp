@@ -11,12 +11,15 @@
 #include <fstream>
 #include <functional>
 #include <mutex>
+#include <thread>
 
 #include "acquisition/session_store.h"
+#include "acquisition/sqlite_db.h"
 #include "build_paths.h"
 #include "core/grid_rows.h"
 #include "formats/grid_file.h"
 #include "station/engine.h"
+#include "station/unfinished_scan.h"
 #include "tests/acquisition/session_support.h"
 #include "tests/station/support/bumpy_scans.h"
 #include "tests/support/temporary_folder.h"
@@ -156,6 +159,68 @@ TEST(EngineStoring, PartsThatWereStoredBeforeAKillAreNotStoredAgain) {
       scans, session, [](const ScanStored&) {}, result);
   ASSERT_TRUE(result->has_value()) << result->error().line();
   EXPECT_EQ(SessionStore::open(session).value().scans()->size(), 3U);
+}
+
+/// Until something of the scan under way is on disk: its device waits for who looks at its rows.
+void wait_for_rows(const fs::path& unfinished) {
+  for (int k = 0; k < 20 && !fs::exists(unfinished / "1" / "0000.grid"); ++k) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  }
+}
+
+TEST(EngineStoring, RowsStayWhereTheScanGetsNoNumber) {
+  const test::TemporaryFolder folder;
+  const auto session = folder.path() / "session";
+  const fs::path unfinished = session / "grids" / "unfinished";
+  const fs::path last = session / "grids" / "99999999.grid";
+  const auto hear = [&](const Event& event) {
+    const auto* profile = std::get_if<ProfileArrived>(&event);
+    if (profile != nullptr && profile->row > 30) {  // the first ones see nothing of the tablet
+      wait_for_rows(unfinished);
+    } else if (std::holds_alternative<DeviceStarts>(event)) {
+      fs::create_directories(last.parent_path());
+      std::ofstream(last) << "the last number that there is";
+    }
+  };
+  JobContext job;
+  const Result<EngineResult> result =
+      Engine({"sim:?seed=1&size=20x16x8&spacing=0.25&noise=0.02", session, false, 0, std::nullopt}, hear)
+          .run(job);
+  ASSERT_FALSE(result.has_value());
+  EXPECT_THAT(result.error().line(), HasSubstr("no number is left"));
+  EXPECT_TRUE(fs::exists(unfinished / "1" / "0000.grid"));
+  fs::remove(last);
+  const auto scans = test::write_bumpy_scans(folder.path() / "scans", 1);
+  std::optional<Result<EngineResult>> again;
+  EXPECT_THAT(run(
+                  scans, session, [](const ScanStored&) {}, again),
+              Contains(HasSubstr("a scan in whose middle the program ended is kept")));
+}
+
+TEST(EngineStoring, LeftRowsAreStoredAlsoWhereTheirDriveCannotBeKept) {
+  const test::TemporaryFolder folder;
+  const auto scans = test::write_bumpy_scans(folder.path() / "scans", 1);
+  const auto session = folder.path() / "session";
+  { ASSERT_TRUE(SessionStore::open_or_create(session)); }
+  {
+    Result<SqlDatabase> db = SqlDatabase::open(session / "session.sqlite", SqlDatabase::Mode::kCreate);
+    ASSERT_TRUE(db &&
+                db->execute("CREATE TRIGGER refuses BEFORE INSERT ON documents WHEN new.name = 'drives' "
+                            "BEGIN SELECT raise(ABORT, 'no room for drives'); END"));
+    Placement drive;
+    drive.turntable_rad = 0.5;
+    UnfinishedScan left(session, drive, std::chrono::milliseconds(0));
+    while (!fs::exists(session / "grids" / "unfinished" / "1" / "0000.grid")) {
+      left.follow(test::bumpy_scan(1), 0);
+    }
+    left.leave();
+  }
+  std::optional<Result<EngineResult>> result;
+  const std::vector<std::string> said = run(
+      scans, session, [](const ScanStored&) {}, result);
+  ASSERT_TRUE(result->has_value()) << result->error().line();
+  EXPECT_THAT(said, ::testing::IsSupersetOf({"stored 0", "stored 1"}));
+  EXPECT_THAT(said, Contains(HasSubstr("no room for drives")));
 }
 
 TEST(EngineStoring, AScanThatIsLostIsTakenFromItsFileAgain) {

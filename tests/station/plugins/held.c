@@ -1,0 +1,68 @@
+/* SPDX-License-Identifier: Apache-2.0
+ * Copyright The Dubsar developers */
+
+/* The driver sim, held fast: whatever moves or scans does nothing until the file that the locator names is
+ * there. For as long as it waits there is one of that name with ".at" behind it. */
+#include <dlfcn.h>
+#include <stdio.h>
+#include <string.h>
+#include <threads.h>
+
+#include "tests/support/plain_driver.h"
+
+static const dubsar_driver* sim;
+static char release[1024]; /* of the one device that a test opens */
+
+static void hold(void) {
+  const struct timespec pause = {0, 5000000};
+  char at[sizeof release + 4];
+  FILE* file = NULL;
+  snprintf(at, sizeof at, "%s.at", release);
+  file = fopen(at, "w");
+  if (file != NULL) {
+    fclose(file);
+  }
+  for (file = NULL; file == NULL; file = fopen(release, "r")) {
+    thrd_sleep(&pause, NULL);
+  }
+  fclose(file);
+  remove(at);
+}
+
+static int32_t open_device(const char* locator, const dubsar_option* options, uint32_t count,
+                           dubsar_device** device, dubsar_error* error) {
+  strncpy(release, locator, sizeof release - 1);
+  return sim->open("", options, count, device, error);
+}
+
+static int32_t place(dubsar_device* device, const dubsar_placement* placement, dubsar_error* error) {
+  hold();
+  return sim->place(device, placement, error);
+}
+
+static int32_t scan(dubsar_device* device, const dubsar_sink* sink, dubsar_error* error) {
+  hold();
+  return sim->scan(device, sink, error);
+}
+
+const dubsar_driver* dubsar_driver_entry(void) {
+  static dubsar_driver driver;
+  typedef const dubsar_driver* (*entry)(void);
+  void* library = dlopen(SIM_DRIVER, RTLD_NOW | RTLD_LOCAL);
+  void* symbol = library != NULL ? dlsym(library, DUBSAR_DRIVER_ENTRY) : NULL;
+  entry of_sim = NULL;
+  if (symbol == NULL) {
+    return NULL;
+  }
+  memcpy(&of_sim, &symbol, sizeof of_sim);
+  sim = of_sim();
+  memset(&driver, 0, sizeof driver);
+  memcpy(&driver, sim, sim->struct_size < sizeof driver ? sim->struct_size : sizeof driver);
+  driver.struct_size = sizeof driver;
+  driver.scheme = "held";
+  driver.description = "a simulated tablet whose scanner is held fast";
+  driver.open = open_device;
+  driver.place = place;
+  driver.scan = scan;
+  return &driver;
+}
