@@ -45,7 +45,7 @@ ScanPose Engine::Impl::set_intruders_aside(const StationScan& scan, ScanPose pos
         "something was in the way of scan {}: {:.0f} % of it, where scan {} looked too, stands in the air",
         found->id, 100 * found->share, found->witness);
     if (const Status taken =
-            take_pages_back_once(*store, fmt::format("scan {} was taken out", found->id), kPlan);
+            take_pages_back_once(*store, fmt::format("scan {} was taken out", found->id), kFollowAndPlan);
         !taken) {
       emit(Notice{taken.error().line()});
     }

@@ -394,6 +394,10 @@ Statement statement_of(const LiveState& state, bool has_device, Wording wording)
     case LivePhase::kFinishing:
       out.tone = Tone::kPlain;
       out.headline = text_of(Text::kFinishing, language);
+      if (state.error) {  // why it ends, while pages are made
+        out.tone = Tone::kBad;
+        out.detail = translated(*state.error, language);
+      }
       break;
     case LivePhase::kSigning:
       out.headline = text_of(Text::kSigning, language);
