@@ -232,6 +232,7 @@ ModelFit judge_in_model(const ScanSurface& scan, std::span<const ModelScan> mode
                        std::max(0.0, 1.0 - kFreeSpaceWeight * both.violation()) * (1.0 - both.absence());
   out.relief = relief_in_model(scan, model, model_from_scanner, options.coarse_tolerance * scan.scale_mm);
   out.significance = out.relief.significance(scan.relief.radius_mm);
+  out.significance_off_rims = out.relief.significance_off_rims(scan.relief.radius_mm);
   out.places = out.relief.places(scan.relief.radius_mm);
   out.score = pose_support(shape, out.significance);
   return out;

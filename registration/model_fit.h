@@ -51,6 +51,7 @@ struct ModelFit {
   double residual_sigma_mm = 0;  ///< expected standard deviation of a residual
   ReliefAgreement relief;        ///< with all scans of the model
   double significance = 0;       ///< of the relief's agreement, in standard deviations
+  double significance_off_rims = 0;  ///< of what of it is not at sharp rims, which are alike everywhere
   double slid_significance =
       0;              ///< the larger one of the scan moved either way along the ICP's weakest direction
   double places = 0;  ///< independent ones that the common surface holds (ReliefAgreement)

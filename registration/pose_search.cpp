@@ -183,8 +183,12 @@ FoundPose search_pose(const ScanSurface& scan, std::span<const ModelScan> model,
     if (!other_clay && consistent_pose(as_told, options.verify)) {
       return {{std::move(as_told)}, {PoseStatus::kRegistered, {}}, true};
     }
-    found.verdict = {PoseStatus::kUnsure,
-                     "it contradicts the stage's pose; check that the tablet did not move between the scans"};
+    // Where the fit lies as the stage says, it is the clay that differs.
+    found.verdict = {
+        PoseStatus::kUnsure,
+        other_clay && !fits.empty()
+            ? not_the_same_clay()
+            : "it contradicts the stage's pose; check that the tablet did not move between the scans"};
     found.fits.push_back(std::move(as_told));
     settled_by_second_look();
     return found;

@@ -15,7 +15,10 @@ namespace dubsar {
 namespace {
 
 constexpr float kUnknown = std::numeric_limits<float>::quiet_NaN();
-constexpr float kSameSide = 0.3F;    ///< cosine between normals of one neighbourhood
+constexpr float kSameSide = 0.3F;  ///< cosine between normals of one neighbourhood
+/// Of the length of the mean normal of all around, 1 where they are parallel: at a sharp rim below 0.85, and
+/// 0.9 where it begins to stand above its surroundings.
+constexpr float kLeastAlike = 0.92F;
 constexpr int kLeastAround = 8;      ///< cells that a neighbourhood must hold
 constexpr float kCompatible = 0.7F;  ///< cosine between normals of one place in two scans
 /// Correlations beyond this are taken as this: the rest is a matter of sampling.
@@ -154,6 +157,7 @@ Relief make_relief(const SurfaceLevel& level, const std::vector<float>& intensit
   out.radius_mm = radius_mm;
   const std::size_t count = level.grid.size();
   out.height_mm.assign(count, kUnknown);
+  out.at_rim.assign(count, 0);
   const auto radius = static_cast<float>(radius_mm);
   const float radius2 = radius * radius;
   std::vector<float> first(count, kUnknown);
@@ -168,9 +172,13 @@ Relief make_relief(const SurfaceLevel& level, const std::vector<float>& intensit
         Eigen::Vector3f normal = Eigen::Vector3f::Zero();
         float sum = 0;
         int around = 0;
+        Eigen::Vector3f every = Eigen::Vector3f::Zero();
+        float whole = 0;
         level.lookup->for_each_near(p, radius, [&](std::size_t j) {
           const Eigen::Vector3f d = level.grid.point(j) - p;
           const float w = weight_at(d.squaredNorm(), radius2);
+          every += w * level.normals[j];
+          whole += w;
           if (w > 0 && level.normals[j].dot(level.normals[i]) > kSameSide) {
             shift += w * d;
             normal += w * level.normals[j];
@@ -180,6 +188,7 @@ Relief make_relief(const SurfaceLevel& level, const std::vector<float>& intensit
         });
         if (around >= kLeastAround && normal.norm() > 1e-3F * sum) {
           first[i] = -normal.normalized().dot(shift / sum);
+          out.at_rim[i] = every.norm() < kLeastAlike * whole ? 1 : 0;
         }
       },
       128);
@@ -228,14 +237,23 @@ double Correlation::value() const {
   return vs > 0 && vt > 0 ? (st - s * t / n) / std::sqrt(vs * vt) : 0.0;
 }
 
-double ReliefAgreement::significance(double radius_mm) const {
-  const auto deviations = [&](const Correlation& c, double share) {
+double ReliefAgreement::together(const Correlation& by_height, double radius_mm) const {
+  const auto deviations = [&](const Correlation& c) {
     const double rho = std::clamp(c.value(), -kMostCorrelation, kMostCorrelation);
+    const double share = height.n > 0 ? c.n / height.n : 0.0;
     return std::atanh(rho) * std::sqrt(std::max(0.0, share * places(radius_mm) - 3.0));
   };
-  const double by_height = deviations(height, 1.0);
-  const double by_tone = deviations(tone, height.n > 0 ? tone.n / height.n : 0.0);
-  return by_tone <= 0 ? by_height : std::hypot(std::max(by_height, 0.0), by_tone);
+  const double of_height = deviations(by_height);
+  const double of_tone = deviations(tone);
+  return of_tone <= 0 ? of_height : std::hypot(std::max(of_height, 0.0), of_tone);
+}
+
+double ReliefAgreement::significance(double radius_mm) const {
+  return together(height, radius_mm);
+}
+
+double ReliefAgreement::significance_off_rims(double radius_mm) const {
+  return together(off_rims, radius_mm);
 }
 
 double ReliefAgreement::places(double radius_mm) const {
@@ -267,8 +285,11 @@ ReliefAgreement relief_agreement(const SurfaceLevel& source, const Relief& sourc
         (rotation * source.normals[i]).dot(target.normals[j]) < kCompatible || off > tolerance) {
       continue;
     }
-    out.height.add(static_cast<double>(source_relief.height_mm[i]),
-                   static_cast<double>(interpolated(target, target_relief.height_mm, j, p)));
+    const auto there_mm = static_cast<double>(interpolated(target, target_relief.height_mm, j, p));
+    out.height.add(static_cast<double>(source_relief.height_mm[i]), there_mm);
+    if (source_relief.at_rim[i] == 0 && target_relief.at_rim[j] == 0) {
+      out.off_rims.add(static_cast<double>(source_relief.height_mm[i]), there_mm);
+    }
     if (!source_relief.tone.empty() && !target_relief.tone.empty() && !std::isnan(source_relief.tone[i]) &&
         !std::isnan(target_relief.tone[j])) {
       out.tone.add(static_cast<double>(source_relief.tone[i]),

@@ -18,6 +18,9 @@ struct SurfaceLevel;
 struct Relief {
   std::vector<float> height_mm;  ///< [rows*cols] of the level, out of the clay positive; NaN where unknown
   std::vector<float> tone;  ///< [rows*cols], logarithm of the intensity, likewise; empty when there is none
+  /// [rows*cols] of the level: beside a sharp rim, or on one. It stands above its surroundings wherever it
+  /// runs, and one rim is like any other: there the height tells of the body's shape too.
+  std::vector<std::uint8_t> at_rim;
   std::vector<std::uint32_t> cells;  ///< those of known height that are sent into other scans, evenly spread
   double cell_area_mm2 = 0;          ///< of surface that one entry of `cells` stands for
   double rms_mm = 0;
@@ -57,10 +60,12 @@ struct Correlation {
 /// How well two scans agree under a pose in what is on the clay, over the cells that lie on each other.
 struct ReliefAgreement {
   Correlation height, tone;
+  Correlation off_rims;  ///< of height, where neither is at a rim
   double area_mm2 = 0;
 
   void add(const ReliefAgreement& b) {
     height.add(b.height);
+    off_rims.add(b.off_rims);
     tone.add(b.tone);
     area_mm2 += b.area_mm2;
   }
@@ -69,10 +74,16 @@ struct ReliefAgreement {
   /// (as the root of the sum of squares) where it agrees and is left aside where it does not: light falls
   /// differently from one pose to the next.
   [[nodiscard]] double significance(double radius_mm) const;
+  /// The same without what lies at rims.
+  [[nodiscard]] double significance_off_rims(double radius_mm) const;
   /// The larger of the two.
   [[nodiscard]] double correlation() const;
   /// How many independent places the common area holds.
   [[nodiscard]] double places(double radius_mm) const;
+
+ private:
+  /// Of this height and the tone.
+  [[nodiscard]] double together(const Correlation& by_height, double radius_mm) const;
 };
 
 /// Sends the source's relief into the target (both over their levels). A cell counts when it lies within

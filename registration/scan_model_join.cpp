@@ -217,6 +217,8 @@ std::optional<double> ScanModel::relief_repeats(int id, const ModelFit& fit,
                                options_.search.fit)
                     .relief;
   told.significance = told.relief.significance(scans_.at(id).features.surface->relief.radius_mm);
+  told.significance_off_rims =
+      told.relief.significance_off_rims(scans_.at(id).features.surface->relief.radius_mm);
   return sure(told, options_.search.verify) ? std::nullopt : repeated;
 }
 

@@ -118,6 +118,7 @@ bool sure(const ModelFit& fit, const VerifyOptions& options) {
       fit.refined() && fit.slid_significance >= options.most_slid_held * fit.significance;
   return !fit.repeats_turned_rad && !as_well_beside &&
          telling_significance(fit, options) >= options.sure_relief &&
+         fit.significance_off_rims >= options.least_off_rims * fit.significance &&
          fit.relief.correlation() >= options.sure_correlation;
 }
 

@@ -39,6 +39,9 @@ struct VerifyOptions {
   // correlation of 0.24; the right pose of scans that share written clay shows 5 to 30 and 0.4 to 0.9.
   double sure_relief = 6.0;  ///< ModelFit::significance, and …
   double sure_correlation = 0.3;
+  /// Of the significance what has to be left without what lies at sharp rims. Edges of a
+  /// box laid on others of its edges kept 0.2 to 0.5 of 5 to 11; right poses 0.97 to 1.14.
+  double least_off_rims = 0.7;
   /// Doubt that a sure pose may leave: scans that graze densely written clay agree in little more than half.
   double sure_doubt = 2.0;
   // Without relief a shape settles a pose when it is distinctive (ModelFit) and fits far better than it must.

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "registration/scan_surface.h"
+#include "registration/verify_pose.h"
 #include "tests/registration/support/height_field.h"
 
 namespace dubsar {
@@ -80,6 +81,19 @@ TEST(Relief, TakesTheBendOfTheBodyOff) {
   const auto b = surface_of(blank, {}, 2);
   EXPECT_LT(a->relief.rms_mm, 0.02);  // the noise of a cell, not the millimetres of the body
   EXPECT_LT(std::abs(agreement(*b, *a, {}).correlation()), 0.25);
+}
+
+TEST(Relief, SharpRimsAreToldApart) {
+  // A roof, seen from above its ridge: slid along the ridge it lies on itself as before, and nothing is
+  // written there.
+  const auto roof = [](double x, double) { return -std::abs(x); };
+  const auto a = surface_of(roof, {}, 1);
+  const auto b = surface_of(roof, {}, 2);
+  const ReliefAgreement slid = agreement(*b, *a, pose_of(0, 0, 0, {0, 5, 0}));
+  EXPECT_GT(slid.area_mm2, 500.0);
+  EXPECT_GT(slid.significance(a->relief.radius_mm), 20.0);
+  EXPECT_LT(slid.significance_off_rims(a->relief.radius_mm),
+            VerifyOptions{}.least_off_rims * slid.significance(a->relief.radius_mm));
 }
 
 TEST(Relief, OfNothingIsNothing) {

@@ -26,6 +26,7 @@ ModelFit right_pose() {
     fit.relief.height.add(a, a + (i % 7 - 3) * 0.5);
   }
   fit.significance = 25;
+  fit.significance_off_rims = 20;
   fit.slid_significance = 10;
   fit.score = 3;
   return fit;
@@ -38,6 +39,7 @@ ModelFit on_a_moulding() {
   fit.icp.stability = 1e-4;
   fit.overlap = fit.best_pair_overlap = 0.12;
   fit.significance = 21;
+  fit.significance_off_rims = 20;
   fit.slid_significance = 21;
   fit.score = 2.8;
   return fit;
@@ -78,6 +80,16 @@ TEST(VerifyPose, WhatAgreesAsWellALittleWayOffIsNotSure) {
   EXPECT_EQ(verdict({other_tablet}).status, PoseStatus::kUnsure);
   other_tablet.slid_significance = 6.4;  // the worst of the right ones
   EXPECT_EQ(verdict({other_tablet}).status, PoseStatus::kRegistered);
+}
+
+TEST(VerifyPose, WhatFallsTogetherAtSharpRimsIsNotSure) {
+  ModelFit box = right_pose();
+  box.significance = 10;
+  box.slid_significance = 8;
+  box.significance_off_rims = 3.3;  // as an edge of a box on another of its edges
+  EXPECT_EQ(verdict({box}).status, PoseStatus::kUnsure);
+  box.significance_off_rims = 9.5;
+  EXPECT_EQ(verdict({box}).status, PoseStatus::kRegistered);
 }
 
 TEST(VerifyPose, AMouldingAloneTellsNoPose) {
