@@ -116,7 +116,8 @@ bool Engine::Impl::hold_locks(JobContext& job) {
 }
 
 void Engine::Impl::take_back_pages() {
-  if (const Status taken = take_pages_back_once(*store, "something was said of its scans", kFollowAndPlan); !taken) {
+  if (const Status taken = take_pages_back_once(*store, "something was said of its scans", kFollowAndPlan);
+      !taken) {
     emit(Notice{taken.error().line()});
   }
 }

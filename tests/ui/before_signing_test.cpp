@@ -131,14 +131,14 @@ TEST(BeforeSigning, ScansThatAreNotJudgedComeBeforeWhatIsRedByTheLackOfThem) {
     state.scans.push_back(state.scans.back());
     state.scans.back().dropped = true;
     Statement s = statement_of(state, true, Language::kEnglish);
-    EXPECT_EQ(s.headline, "7 scans are not judged yet: Finish judges them");
+    EXPECT_EQ(s.headline, "Scans not judged yet: 7. Finish judges them");
     EXPECT_TRUE(s.may_finish);
     EXPECT_FALSE(s.may_sign) << "signing would be refused";
     EXPECT_TRUE(s.may_scan);
     EXPECT_THAT(s.detail, Not(HasSubstr("Turn")));
     state.error = Error{ErrorKind::kDevice, "the cable is out", "", "plug it in"};
     s = statement_of(state, true, Language::kEnglish);
-    EXPECT_THAT(s.detail, HasSubstr("7 scans are not judged yet: Finish judges them."));
+    EXPECT_THAT(s.detail, HasSubstr("Scans not judged yet: 7. Finish judges them."));
     EXPECT_TRUE(s.may_finish);
     EXPECT_FALSE(s.may_sign);
   }

@@ -45,7 +45,7 @@ bool add_warnings(Statement& out, const LiveState& state, Language language) {
   return warned > 0;
 }
 
-/// "7 scans are not judged yet: Finish judges them"; empty where all are.
+/// "Scans not judged yet: 7. Finish judges them"; empty where all are.
 std::string unjudged_line(const LiveState& state, Language language) {
   const int count = unjudged_scans(state);
   return count == 0   ? std::string()

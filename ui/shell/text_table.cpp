@@ -27,7 +27,7 @@ constexpr TextRow kRows[] = {
     {Text::kStoredScans, "Scans stored: {}. Go on", "Gespeicherte Scans: {}. Weiter"},
     {Text::kUnjudgedScan, "A scan is not judged yet: Finish judges it",
      "Ein Scan ist noch nicht beurteilt: Abschließen beurteilt ihn"},
-    {Text::kUnjudgedScans, "{} scans are not judged yet: Finish judges them",
+    {Text::kUnjudgedScans, "Scans not judged yet: {}. Finish judges them",
      "{} Scans sind noch nicht beurteilt: Abschließen beurteilt sie"},
     {Text::kUnjudgedHow, "They may hold what is red on the model: judge first, then scan.",
      "Was auf dem Modell rot ist, kann auf ihnen sein: erst beurteilen, dann scannen."},
