@@ -50,8 +50,11 @@ Result<Pages> pages_of(const PackageContent& content) {
       return std::unexpected(sheet.error());
     }
     // What a person has corrected since does not make the verdict another one.
-    return Pages{page_with_wedges(moved(kept->report, content), facts.wedges, facts.wedge_profiles),
-                 moved(kept->checklist, content), std::move(*sheet)};
+    std::string report = moved(kept->report, content);
+    if (content.wedges || !content.has(PackagePart::kWedges)) {
+      report = page_with_wedges(std::move(report), facts.wedges, facts.wedge_profiles);
+    }
+    return Pages{std::move(report), moved(kept->checklist, content), std::move(*sheet)};
   }
   ReportInput input = content.source.input(facts);
   input.when = content.when;

@@ -11,8 +11,8 @@
 #include <vector>
 
 #include "bench/support/options.h"
+#include "bench/support/registered_poses.h"
 #include "bench/support/true_scans.h"
-#include "registration/registrar.h"
 
 namespace {
 
@@ -72,18 +72,9 @@ Tally run(const Case& c, std::uint64_t seed, double spacing_mm, int gripped_ever
       scans.push_back(std::move(scan));
     }
   }
-  JobContext job;
-  Registrar registrar;
-  for (std::size_t k = 0; k < scans.size(); ++k) {
-    registrar.add(static_cast<int>(k), scans[k].grid, nullptr, job);
-  }
-  if (!registrar.finalize(job)) {
-    std::fprintf(stderr, "registration was stopped\n");
-    std::exit(2);
-  }
   Tally tally;
   tally.judged = static_cast<int>(scans.size()) - 1;
-  const std::vector<ScanPose> poses = registrar.poses();
+  const std::vector<ScanPose> poses = bench::registered_poses(scans);
   const ScanPose* first = nullptr;
   for (const ScanPose& pose : poses) {
     if (pose.status != PoseStatus::kRegistered) {

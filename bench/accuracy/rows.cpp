@@ -12,15 +12,14 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <cstdlib>
 #include <map>
 #include <vector>
 
 #include "bench/accuracy/gauge.h"
 #include "bench/support/options.h"
+#include "bench/support/registered_poses.h"
 #include "bench/support/row_of_scans.h"
 #include "bench/support/statistics.h"
-#include "registration/registrar.h"
 
 namespace {
 
@@ -58,16 +57,7 @@ Eigen::Vector3d centroid_mm(const RangeGrid& grid) {
 }
 
 void run(const RowOptions& options, const std::vector<TrueScan>& scans, std::size_t set, Sums& sums) {
-  JobContext job;
-  Registrar registrar;
-  for (std::size_t k = 0; k < scans.size(); ++k) {
-    registrar.add(static_cast<int>(k), scans[k].grid, nullptr, job);
-  }
-  if (!registrar.finalize(job)) {
-    std::fprintf(stderr, "registration was stopped\n");
-    std::exit(2);
-  }
-  std::vector<ScanPose> poses = registrar.poses();
+  std::vector<ScanPose> poses = bench::registered_poses(scans);
   std::erase_if(poses, [](const ScanPose& pose) { return pose.status != PoseStatus::kRegistered; });
   const auto registered = static_cast<int>(poses.size());
   // The scan that is the model frame is the one without an error of its own.

@@ -3,11 +3,9 @@
 
 /* The driver sim: as a scanner with motors whose tablet people turn: it is told of a turn by hand when the
  * motors are to move. On standard error it says what moves and that it scans. */
-#include <dlfcn.h>
 #include <stdio.h>
-#include <string.h>
 
-#include "tests/support/plain_driver.h"
+#include "tests/support/wrapped_driver.h"
 
 static const dubsar_driver* sim;
 
@@ -23,21 +21,8 @@ static int32_t scan(dubsar_device* device, const dubsar_sink* sink, dubsar_error
 
 const dubsar_driver* dubsar_driver_entry(void) {
   static dubsar_driver driver;
-  typedef const dubsar_driver* (*entry)(void);
-  void* library = dlopen(SIM_DRIVER, RTLD_NOW | RTLD_LOCAL);
-  void* symbol = library != NULL ? dlsym(library, DUBSAR_DRIVER_ENTRY) : NULL;
-  entry of_sim = NULL;
-  if (symbol == NULL) {
-    return NULL;
-  }
-  memcpy(&of_sim, &symbol, sizeof of_sim);
-  sim = of_sim();
-  memset(&driver, 0, sizeof driver);
-  memcpy(&driver, sim, sim->struct_size < sizeof driver ? sim->struct_size : sizeof driver);
-  driver.struct_size = sizeof driver;
-  driver.scheme = "hands";
-  driver.description = "a scanner with motors, whose tablet is turned by hand";
+  sim = wrap_driver(SIM_DRIVER, "hands", "a scanner with motors, whose tablet is turned by hand", &driver);
   driver.place = place;
   driver.scan = scan;
-  return &driver;
+  return sim != NULL ? &driver : NULL;
 }

@@ -3,12 +3,11 @@
 
 /* The driver sim, held fast: whatever moves or scans does nothing until the file that the locator names is
  * there. For as long as it waits there is one of that name with ".at" behind it. */
-#include <dlfcn.h>
 #include <stdio.h>
 #include <string.h>
 #include <threads.h>
 
-#include "tests/support/plain_driver.h"
+#include "tests/support/wrapped_driver.h"
 
 static const dubsar_driver* sim;
 static char release[1024]; /* of the one device that a test opens */
@@ -47,22 +46,9 @@ static int32_t scan(dubsar_device* device, const dubsar_sink* sink, dubsar_error
 
 const dubsar_driver* dubsar_driver_entry(void) {
   static dubsar_driver driver;
-  typedef const dubsar_driver* (*entry)(void);
-  void* library = dlopen(SIM_DRIVER, RTLD_NOW | RTLD_LOCAL);
-  void* symbol = library != NULL ? dlsym(library, DUBSAR_DRIVER_ENTRY) : NULL;
-  entry of_sim = NULL;
-  if (symbol == NULL) {
-    return NULL;
-  }
-  memcpy(&of_sim, &symbol, sizeof of_sim);
-  sim = of_sim();
-  memset(&driver, 0, sizeof driver);
-  memcpy(&driver, sim, sim->struct_size < sizeof driver ? sim->struct_size : sizeof driver);
-  driver.struct_size = sizeof driver;
-  driver.scheme = "held";
-  driver.description = "a simulated tablet whose scanner is held fast";
+  sim = wrap_driver(SIM_DRIVER, "held", "a simulated tablet whose scanner is held fast", &driver);
   driver.open = open_device;
   driver.place = place;
   driver.scan = scan;
-  return &driver;
+  return sim != NULL ? &driver : NULL;
 }
