@@ -12,6 +12,8 @@ namespace {
 
 constexpr auto kWait = std::chrono::milliseconds(200);
 constexpr auto kAtMost = std::chrono::seconds(5);
+/// Frames that a camera's queue holds at most: V4L2's.
+constexpr int kQueued = 32;
 
 std::int64_t monotonic_ns() {
   return std::chrono::duration_cast<std::chrono::nanoseconds>(
@@ -24,15 +26,23 @@ std::int64_t monotonic_ns() {
 Result<Frame> fresh_frame(Device& camera, const std::function<bool()>& stopped) {
   std::int64_t not_before_ns = monotonic_ns();
   bool let_go = false;
+  int may_wait = kQueued;
   const auto until = std::chrono::steady_clock::now() + kAtMost;
   while (std::chrono::steady_clock::now() < until) {
     if (stopped()) {
       return fail(ErrorKind::kCancelled, "stopped before a frame came", camera.uri());
     }
-    Result<std::optional<Frame>> frame = camera.next_frame(kWait);
+    const bool looks = may_wait > 0;
+    Result<std::optional<Frame>> frame = camera.next_frame(looks ? std::chrono::milliseconds(0) : kWait);
     if (!frame) {
       return std::unexpected(frame.error());
     }
+    // Where nothing but the taking stamps a frame, one that was there at once may be of any age.
+    if (looks && *frame && !(*frame)->exposed && (*frame)->device_timestamp_ns == 0) {
+      --may_wait;
+      continue;
+    }
+    may_wait = 0;
     if (!*frame || (*frame)->timestamp_ns < not_before_ns || (*frame)->incomplete) {
       continue;
     }

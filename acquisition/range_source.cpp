@@ -153,36 +153,77 @@ std::string losses_of(const ScanRecord& record) {
   return out;
 }
 
+template <class Call>
+auto RangeSource::watched(const JobContext& job, const Call& call) {
+  StopsWhenCancelled watch(device_, job, halted_.get());
+  auto answer = call();
+  note_stop(watch.end());
+  if (job.cancelled() && !*halted_ && !stop_refused_) {
+    note_stop(device_.stop());  // who made the call end may have seen it before the watch did
+  }
+  return answer;
+}
+
 Status RangeSource::place(const Placement& placement, JobContext& job) {
   if (job.cancelled()) {
     return fail(ErrorKind::kCancelled, "stopped before the move", uri_.text());
   }
-  if (const auto halt = halted()) {
+  if (const auto halt = halted_before(job)) {
     return std::unexpected(*halt);
   }
-  const Status placed = [&] {
-    const StopsWhenCancelled watch(device_, job, halted_.get());
-    return device_.place(placement);
-  }();
-  const auto halt = halted(job);
-  return halt ? std::unexpected(*halt) : placed;
+  const Status placed = watched(job, [&] { return device_.place(placement); });
+  const auto ended = ended_by_hand(job);
+  return ended ? std::unexpected(*ended) : placed;
 }
 
-std::optional<Error> RangeSource::halted(const JobContext& job) const {
+Status RangeSource::stop() {
+  note_stop(device_.stop());
+  const auto refused = unstopped();
+  return refused ? std::unexpected(*refused) : Status{};
+}
+
+void RangeSource::note_stop(const Status& answer) {
+  const bool is_refused = !answer && answer.error().kind != ErrorKind::kCancelled;
+  stop_refused_ = is_refused ? std::optional(answer.error()) : std::nullopt;
+}
+
+std::optional<Error> RangeSource::unstopped() const {
+  if (!stop_refused_) {
+    return std::nullopt;
+  }
+  return Error{ErrorKind::kDevice,
+               (*halted_ ? "the emergency stop was pressed, but laser and motors may still be on: "
+                         : "stopped, but laser and motors may still be on: ") +
+                   stop_refused_->what,
+               stop_refused_->where, "pull the plugs of laser and stage, or switch off their power"};
+}
+
+std::optional<Error> RangeSource::halted_before(const JobContext& job) {
   if (job.halted()) {
     halt();
   }
+  if (*halted_) {
+    [[maybe_unused]] const Status said = stop();  // halted() knows
+  }
   return halted();
+}
+
+std::optional<Error> RangeSource::ended_by_hand(const JobContext& job) const {
+  if (job.halted()) {
+    halt();
+  }
+  return job.cancelled() && !*halted_ ? unstopped() : halted();
 }
 
 std::optional<Error> RangeSource::halted() const {
   if (!*halted_) {
     return std::nullopt;
   }
-  return Error{ErrorKind::kDevice,
-               "the emergency stop was pressed: lasers are off and nothing moves",
-               {},
-               "see that all is clear, then scan: a stage with switches is homed first"};
+  return unstopped().value_or(
+      Error{ErrorKind::kDevice,
+            "the emergency stop was pressed: lasers are off and nothing moves",
+            {},
+            "see that all is clear, then scan: a stage with switches is homed first"});
 }
 
 RangeSource::RangeSource(DeviceUri uri, Device device, DeviceCapabilities capabilities,
@@ -218,19 +259,17 @@ Result<RangeSource> RangeSource::open(std::string_view text, const DriverRegistr
 Result<std::optional<RangeGrid>> RangeSource::next(const RowObserver& observer, JobContext& job) {
   partial_.reset();
   record_ = {};
-  if (const auto halt = halted(job)) {
+  if (const auto halt = halted_before(job)) {
     return std::unexpected(*halt);
   }
   Collector collector(observer, record_.remarks, job, *halted_);
-  const Result<ScanOutcome> outcome = [&] {
-    const StopsWhenCancelled watch(device_, job, halted_.get());
-    return device_.scan(collector);
-  }();
+  const Result<ScanOutcome> outcome = watched(job, [&] { return device_.scan(collector); });
   record_.tally = collector.tally;
   record_.file = collector.info().file;
   std::optional<Error> fault = outcome ? std::nullopt : std::optional(outcome.error());
-  if (fault) {
-    fault = halted(job).value_or(*fault);
+  if (fault || stop_refused_) {
+    const std::optional<Error> ended = ended_by_hand(job);
+    fault = ended ? ended : fault;
   }
   if (outcome && *outcome == ScanOutcome::kExhausted) {
     return std::optional<RangeGrid>();

@@ -49,19 +49,24 @@ class RangeSource {
   [[nodiscard]] Device& device() { return device_; }
 
   /// Asks for where the next scan is taken from. When the job is cancelled meanwhile the device is stopped,
-  /// where it offers that, and the answer is kCancelled; a job that is halted halts this, for good.
+  /// where it offers that, and the answer is kCancelled, or unstopped(); a job that is halted halts this, for
+  /// good.
   Status place(const Placement& placement, JobContext& job);
-  /// Stops all motion, where the device offers that.
-  Status stop() const { return device_.stop(); }
+  /// Stops all motion, where the device offers that; else unstopped().
+  Status stop();
+  /// kDevice, with what to do by hand: the device did not obey when it was told to stop last.
+  [[nodiscard]] std::optional<Error> unstopped() const;
   /// The emergency stop, from any thread: within some milliseconds of this a scan or a placement that runs
   /// has been told to end at once, lasers off, whatever that does to the stage's position. What was scanned
-  /// is in partial(), and the answer, now and to all that is asked later, is the error of halted().
+  /// is in partial(), and the answer, now and to all that is asked later, is the error of halted(): which of
+  /// the two it is the device has said.
   void halt() const { *halted_ = true; }
   [[nodiscard]] std::optional<Error> halted() const;
 
   /// Runs the next scan. Nothing: the source is exhausted. On an error (kDevice, kBadInput, kCancelled when
-  /// `job` was cancelled) the rows that came are in partial(); a finite source goes on with its next scan at
-  /// the next call. Points without an order are resampled first and then handed on row by row.
+  /// `job` was cancelled and the device has obeyed) the rows that came are in partial(); a finite source goes
+  /// on with its next scan at the next call. Points without an order are resampled first and then handed on
+  /// row by row.
   [[nodiscard]] Result<std::optional<RangeGrid>> next(const RowObserver& observer, JobContext& job);
 
   /// The rows of the last scan when next() failed in the middle of it; moved out.
@@ -71,13 +76,20 @@ class RangeSource {
 
  private:
   RangeSource(DeviceUri uri, Device device, DeviceCapabilities capabilities, ResampleOptions resampling);
-  [[nodiscard]] std::optional<Error> halted(const JobContext& job) const;
+  /// Why nothing is asked of the device any more, once it was told to stop.
+  [[nodiscard]] std::optional<Error> halted_before(const JobContext& job);
+  [[nodiscard]] std::optional<Error> ended_by_hand(const JobContext& job) const;
+  /// One call of the device, which is stopped when it is to be.
+  template <class Call>
+  [[nodiscard]] auto watched(const JobContext& job, const Call& call);
+  void note_stop(const Status& answer);
 
   DeviceUri uri_;
   Device device_;
   DeviceCapabilities capabilities_;
   ResampleOptions resampling_;
   std::unique_ptr<std::atomic<bool>> halted_ = std::make_unique<std::atomic<bool>>(false);
+  std::optional<Error> stop_refused_;  ///< what the device answered when it was stopped last
   std::optional<RangeGrid> partial_;
   ScanRecord record_;
 };

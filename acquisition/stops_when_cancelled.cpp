@@ -21,6 +21,10 @@ StopsWhenCancelled::StopsWhenCancelled(const Device& device, const JobContext& j
 }
 
 StopsWhenCancelled::~StopsWhenCancelled() {
+  [[maybe_unused]] const Status said = end();
+}
+
+Status StopsWhenCancelled::end() {
   if (watcher_.joinable()) {
     watcher_.request_stop();
     watcher_.join();
@@ -28,6 +32,7 @@ StopsWhenCancelled::~StopsWhenCancelled() {
       halt_device();
     }
   }
+  return answer_;
 }
 
 bool StopsWhenCancelled::halted() const {
@@ -36,8 +41,13 @@ bool StopsWhenCancelled::halted() const {
 
 void StopsWhenCancelled::halt_device() {
   said_ = true;
-  if (!device_.emergency_stop()) {
-    [[maybe_unused]] const Status said = device_.stop();
+  answer_ = device_.emergency_stop();
+  if (answer_) {
+    return;
+  }
+  const Status stopped = device_.stop();
+  if (answer_.error().kind == ErrorKind::kUsage) {  // it has no emergency stop
+    answer_ = stopped;
   }
 }
 
@@ -51,7 +61,7 @@ void StopsWhenCancelled::watch(const std::stop_token& done) {
     if (halted()) {
       halt_device();
     } else if (is_cancelled) {
-      [[maybe_unused]] const Status said = device_.stop();
+      answer_ = device_.stop();
     }
   }
 }

@@ -8,6 +8,7 @@
 #include <thread>
 
 #include "core/job.h"
+#include "core/result.h"
 #include "drivers/device.h"
 
 namespace dubsar {
@@ -24,6 +25,9 @@ class StopsWhenCancelled {
   StopsWhenCancelled(const StopsWhenCancelled&) = delete;
   StopsWhenCancelled& operator=(const StopsWhenCancelled&) = delete;
 
+  /// Ends the watching: what the device answered when it was stopped last. OK where nobody asked for a stop.
+  Status end();
+
  private:
   [[nodiscard]] bool halted() const;
   void halt_device();
@@ -33,6 +37,7 @@ class StopsWhenCancelled {
   const JobContext& job_;
   const std::atomic<bool>* halted_;
   bool said_ = false;  ///< the device's emergency stop; read when the watcher has ended
+  Status answer_;      ///< likewise
   std::mutex mutex_;
   std::condition_variable_any wake_;
   std::jthread watcher_;

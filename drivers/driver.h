@@ -434,10 +434,10 @@ typedef struct dubsar_driver {
    * read_motion() and set_laser() may be called while a move that was started runs; stop() and
    * emergency_stop() from another thread at any time, also while home() or move() runs there, which then
    * return soon with DUBSAR_CANCELLED. stop() ends the motion and leaves the position known.
-   * emergency_stop() ends it as fast as can be and puts the lasers off; afterwards nothing moves until home()
-   * (or, of a stage without switches, until the device is opened anew). The lasers are off after open(),
-   * after stop(), close() and any error of the device, and the driver sees to it that they go off when the
-   * program dies. */
+   * emergency_stop() ends it as fast as can be, lasers off; afterwards nothing moves until home() (without
+   * switches: until the device is opened anew). OK of either says that the device obeyed or had nothing to
+   * end. The lasers are off after open(), after stop(), close() and any error of the device, and the driver
+   * sees to it that they go off when the program dies. */
   int32_t (*describe_axes)(dubsar_device* device, dubsar_axis_callback callback, void* user,
                            dubsar_error* error);
   int32_t (*home)(dubsar_device* device, dubsar_error* error);

@@ -167,6 +167,9 @@ Result<EngineResult> Engine::run(JobContext& job) {
     impl_->change_settings();  // those that came behind the last scan
   }
   if (!result && result.error().kind == ErrorKind::kCancelled) {
+    if (const auto refused = impl_->source ? impl_->source->unstopped() : std::nullopt) {
+      return std::unexpected(*refused);
+    }
     const int stored = impl_->stored_count;
     return fail(ErrorKind::kCancelled,
                 fmt::format("stopped; {} {} stored", stored, stored == 1 ? "scan is" : "scans are"),

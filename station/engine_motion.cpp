@@ -39,6 +39,10 @@ void Engine::Impl::end_motion(Error error) {
 }
 
 void Engine::Impl::end_halted() {
+  if (!source->halted()) {
+    return;
+  }
+  [[maybe_unused]] const Status said = source->stop();  // halted() knows
   const std::optional<Error> halt = source->halted();
   const bool told = [&] {
     const std::scoped_lock lock(mutex);
@@ -62,8 +66,16 @@ void Engine::Impl::stop_motion_after_trouble(const JobContext& job) {
     const std::scoped_lock lock(mutex);
     return device_error.has_value();
   }();
-  if (failed_device || job.cancelled()) {
-    [[maybe_unused]] const Status said = source->stop();
+  if (!failed_device && !job.cancelled()) {
+    return;
+  }
+  const Status still = source->stop();
+  const bool told = [&] {
+    const std::scoped_lock lock(mutex);
+    return still || (device_error && device_error->mend == still.error().mend);
+  }();
+  if (!told) {
+    end_motion(still.error());
   }
 }
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <thread>
+#include <utility>
 
 #include "core/number_text.h"
 
@@ -23,6 +24,8 @@ constexpr auto kGrace = 2s;
 /// How far beyond its reach or its speed a report may be before it is impossible.
 constexpr double kSlack = 0.05;
 constexpr double kSpeedSlack = 3;
+
+constexpr const char* kPullPlugs = "pull the plugs of laser and stage, or switch off their power";
 
 std::string shown(const Axis& axis, double value) {
   return fixed_text(value / unit_of(axis.rotary), 3) + (axis.rotary ? " deg" : " mm");
@@ -50,35 +53,39 @@ Status Controller::connect() {
   if (firmware_) {
     return {};
   }
+  const auto out_of_reach = [this](Error error) -> Status {
+    error.mend = lost_at_work_ ? kPullPlugs : error.mend;
+    return std::unexpected(std::move(error));
+  };
   Result<std::unique_ptr<Link>> link = ways_.link();
   if (!link) {
-    return std::unexpected(link.error());
+    return out_of_reach(link.error());
   }
-  link_ = std::move(*link);
+  link_ = std::make_shared<Gate>(std::move(*link));
   Result<std::unique_ptr<Firmware>> firmware = ways_.firmware(*link_);
   if (!firmware) {
     link_.reset();
-    return std::unexpected(firmware.error());
+    return out_of_reach(firmware.error());
   }
   if (const Status connected = (*firmware)->connect(); !connected) {
     firmware->reset();
     link_.reset();
-    return connected;
+    return out_of_reach(connected.error());
   }
   firmware_ = std::move(*firmware);
   power_.assign(static_cast<std::size_t>(firmware_->lasers()), 0.0);
   last_.reset();
-  maybe_lit_ = false;  // connect() puts them off
+  moves_ = lost_at_work_ = unheard_ = false;  // connect() puts lasers off, and nothing moves
   const std::lock_guard lock(panic_mutex_);
   panic_link_ = link_;
   panic_bytes_ = firmware_->panic();
   return {};
 }
 
-void Controller::drop() {
+bool Controller::drop() {
   const bool lit = std::ranges::any_of(power_, [](double power) { return power > 0; });
-  const bool heard = link_ && firmware_ && link_->write(firmware_->panic());
-  maybe_lit_ = maybe_lit_ || (lit && !heard);
+  const bool heard = link_ && firmware_ && link_->shut(firmware_->panic());
+  lost_at_work_ = lost_at_work_ || lit || moves_;
   {
     const std::lock_guard lock(panic_mutex_);
     panic_link_.reset();
@@ -87,27 +94,39 @@ void Controller::drop() {
   link_.reset();
   std::ranges::fill(power_, 0.0);
   last_.reset();
+  unheard_ = unheard_ || (lost_at_work_ && !heard);
+  return heard;
 }
 
 Status Controller::settle(Status status) {
-  if (!status && status.error().kind == ErrorKind::kDevice) {
-    drop();
+  if (status || status.error().kind != ErrorKind::kDevice) {
+    return status;
+  }
+  if (link_ && link_->is_shut()) {
+    return status;  // by an emergency stop, whose reset this may be: it waits, and finds out what is true
+  }
+  if (!drop() && lost_at_work_) {
+    status.error().mend = kPullPlugs;
   }
   return status;
 }
 
 Controller::~Controller() {
   const std::lock_guard lock(mutex_);
-  if (firmware_) {
-    const Status dark = firmware_->stop();
-    maybe_lit_ = maybe_lit_ || !dark;
-    if (!dark) {
-      drop();
-    }
+  if (firmware_ && !firmware_->stop()) {
+    drop();
+    unheard_ = true;
   }
-  if (maybe_lit_ && guard_) {
+  if (unheard_ && guard_) {
     guard_->leave_it_to_you();
   }
+}
+
+Status Controller::gone() const {
+  return lost_at_work_
+             ? fail(ErrorKind::kDevice, "the controller cannot be reached, and its laser or its motor was on",
+                    where_, kPullPlugs)
+             : Status{};
 }
 
 std::unexpected<Error> Controller::stopped() const {
@@ -148,12 +167,12 @@ Status Controller::plausible(const Position& now) {
 Result<Position> Controller::read_locked() {
   Result<Position> now = firmware_->read();
   if (!now) {
-    [[maybe_unused]] const Status settled = settle(std::unexpected(now.error()));
-    return now;
+    return std::unexpected(settle(std::unexpected(now.error())).error());
   }
   if (const Status sane = settle(plausible(*now)); !sane) {
     return std::unexpected(sane.error());
   }
+  moves_ = moves_ && now->moving;
   last_ = *now;
   return now;
 }
@@ -176,11 +195,11 @@ Status Controller::set_laser(std::size_t laser, double power) {
     return fail(ErrorKind::kUsage, "no laser " + std::to_string(laser), where_,
                 "it has " + std::to_string(power_.size()) + ", from 0");
   }
-  if (power > 0 && halted_) {
-    return halted();
-  }
   if (const Status connected = connect(); !connected) {
     return connected;
+  }
+  if (power > 0 && halted_) {
+    return halted();
   }
   if (power > 0 && power < 1 && !firmware_->dims()) {
     return fail(ErrorKind::kUsage, "this controller has no power between off and on for its laser", where_,
@@ -203,9 +222,13 @@ Status Controller::set_laser(std::size_t laser, double power) {
     }
     guard_ = std::move(*guard);
   }
+  const double before = power_[laser];
+  power_[laser] = std::max(before, power);  // until it has answered it may be either
   Status set = settle(firmware_->set_laser(static_cast<int>(laser), power));
   if (set) {
     power_[laser] = power;
+  } else if (set.error().kind == ErrorKind::kUsage) {
+    power_[laser] = before;
   }
   return set;
 }
@@ -228,11 +251,11 @@ Status Controller::move(std::size_t axis, double position, double speed, bool st
       return fail(ErrorKind::kUsage, shown(one, speed) + "/s is no speed of axis " + one.name, where_,
                   "at most " + shown(one, one.speed_maximum) + "/s");
     }
-    if (halted_) {
-      return halted();
-    }
     if (const Status connected = connect(); !connected) {
       return connected;
+    }
+    if (halted_) {
+      return halted();
     }
     if (one.can_home && !firmware_->homed()) {
       return fail(ErrorKind::kUsage, "where the stage is is not known", where_, "home it first");
@@ -240,7 +263,9 @@ Status Controller::move(std::size_t axis, double position, double speed, bool st
     if (stops_ != stops) {
       return stopped();
     }
-    if (Status started = settle(firmware_->start_move(axis, position, speed)); !started) {
+    Status started = firmware_->start_move(axis, position, speed);
+    moves_ = moves_ || started || started.error().kind != ErrorKind::kUsage;
+    if (started = settle(std::move(started)); !started) {
       return started;
     }
   }
@@ -269,8 +294,9 @@ Status Controller::wait_for(std::size_t axis, double position, double speed, std
       }
       still_since = now->moving ? Clock::now() : still_since;
       if (now->alarm || Clock::now() - still_since > kStandstill || Clock::now() > until) {
-        [[maybe_unused]] const Status ended = settle(firmware_->stop());
-        std::ranges::fill(power_, 0.0);
+        if (Status ended = end_locked(); !ended) {
+          return ended;
+        }
         return fail(ErrorKind::kDevice,
                     (now->alarm ? "the stage went into alarm " : "the stage stands ") +
                         shown(axes_[axis], left) + " short of its target",
@@ -290,6 +316,7 @@ Status Controller::home() {
     return connected;
   }
   const Clock::time_point until = Clock::now() + ways_.homing;
+  const bool moved = std::exchange(moves_, true);
   Status found = firmware_->home([&] { return stops_ != stops || Clock::now() > until; });
   if (!found && found.error().kind == ErrorKind::kCancelled && stops_ == stops) {
     found = fail(ErrorKind::kDevice, "the stage looked for its switch in vain", where_,
@@ -298,8 +325,12 @@ Status Controller::home() {
   Status homed = settle(std::move(found));
   last_.reset();  // where it is may have been told anew
   if (homed) {
-    halted_ = false;
-  } else if (homed.error().kind != ErrorKind::kUsage) {  // which is a refusal that changes nothing
+    moves_ = false;
+    halted_ = halted_ && stops_ != stops;
+  } else if (homed.error().kind == ErrorKind::kUsage) {  // a refusal that changes nothing
+    moves_ = moved;
+  } else if (homed.error().kind == ErrorKind::kCancelled && !link_->is_shut()) {
+    moves_ = false;
     std::ranges::fill(power_, 0.0);
   }
   return homed;
@@ -308,36 +339,40 @@ Status Controller::home() {
 Status Controller::stop() {
   ++stops_;
   const std::lock_guard lock(mutex_);
-  if (!firmware_) {
-    return {};  // gone, and dark as far as can be told
-  }
-  return end_locked();
+  return firmware_ ? end_locked() : gone();
 }
 
 Status Controller::end_locked() {
-  Status ended = settle(firmware_->stop());
-  std::ranges::fill(power_, 0.0);
+  return ended(firmware_->stop());
+}
+
+Status Controller::ended(Status status) {
+  status = settle(std::move(status));
+  if (status) {
+    moves_ = false;
+    std::ranges::fill(power_, 0.0);
+  }
   last_.reset();
-  return ended;
+  return status;
 }
 
 Status Controller::emergency_stop() {
+  const std::lock_guard one_at_a_time(halt_mutex_);
   ++stops_;
+  halted_ = true;
   {  // first of all, whatever else goes on
     const std::lock_guard lock(panic_mutex_);
     if (panic_link_) {
-      [[maybe_unused]] const Status sent = panic_link_->write(panic_bytes_);
+      [[maybe_unused]] const Status sent = panic_link_->shut(panic_bytes_);
     }
   }
   const std::lock_guard lock(mutex_);
-  halted_ = true;
+  halted_ = true;  // a homing that ended just then may have taken it back
   if (!firmware_) {
-    return {};
+    return gone();
   }
-  Status halted = settle(firmware_->halt());
-  std::ranges::fill(power_, 0.0);
-  last_.reset();
-  return halted;
+  link_->open();
+  return ended(firmware_->halt());
 }
 
 }  // namespace dubsar::usb_stage

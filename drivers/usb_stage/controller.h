@@ -11,6 +11,7 @@
 
 #include "core/result.h"
 #include "drivers/usb_stage/firmware.h"
+#include "drivers/usb_stage/gate.h"
 #include "drivers/usb_stage/guard.h"
 #include "drivers/usb_stage/link.h"
 
@@ -54,7 +55,10 @@ class Controller {
   [[nodiscard]] Result<Motion> read();
   /// Off is at once: where the firmware would obey only behind a move, that move ends, with kCancelled.
   Status set_laser(std::size_t laser, double power);
+  /// OK: the controller has answered, or there was nothing to end. kDevice: it may not have obeyed, or was
+  /// lost with its laser on or its stage in motion, and nobody has put that to an end since.
   Status stop();
+  /// As stop(); what other threads have asked for and not sent by now is not sent any more.
   Status emergency_stop();
 
   /// Of the first axis.
@@ -64,12 +68,17 @@ class Controller {
  private:
   Controller(Ways ways, std::string where) : ways_(std::move(ways)), where_(std::move(where)) {}
   Status connect();
-  /// After an error of the device: what can be sent without an answer is sent, and the link dropped.
-  void drop();
+  /// After an error of the device: what can be sent without an answer is sent, and the link dropped. False:
+  /// that was not taken.
+  bool drop();
+  /// Drops a controller that has failed; of one that was at work and cannot be reached says what to do.
   Status settle(Status status);
+  /// kDevice where it was lost at work.
+  [[nodiscard]] Status gone() const;
   Status plausible(const Position& now);
   Result<Position> read_locked();
   Status end_locked();  ///< the motion, and the light
+  Status ended(Status status);
   Status wait_for(std::size_t axis, double position, double speed, std::uint64_t stops);
   [[nodiscard]] std::unexpected<Error> stopped() const;
   [[nodiscard]] std::unexpected<Error> halted() const;
@@ -83,17 +92,20 @@ class Controller {
 
   std::mutex
       mutex_;  ///< of all below; held for one question and its answer, or a homing that looks at stops_
-  std::shared_ptr<Link> link_;
+  std::shared_ptr<Gate> link_;
   std::unique_ptr<Firmware> firmware_;
   std::unique_ptr<Guard> guard_;
   std::vector<double> power_;
   std::optional<Position> last_;
-  bool halted_ = false;
-  bool maybe_lit_ = false;  ///< the controller was lost with a laser on
+  bool moves_ = false;         ///< a motion was asked for and not seen to have ended
+  bool lost_at_work_ = false;  ///< with a laser on or in motion, and not connected since
+  bool unheard_ = false;       ///< and what would have ended that was not taken
 
+  std::mutex halt_mutex_;   ///< one emergency stop at a time
   std::mutex panic_mutex_;  ///< of the two that a halt uses without waiting for mutex_
-  std::shared_ptr<Link> panic_link_;
+  std::shared_ptr<Gate> panic_link_;
   std::string panic_bytes_;
+  std::atomic<bool> halted_ = false;
   std::atomic<std::uint64_t> stops_ = 0;  ///< asked for so far; a move that sees more than it began with ends
 };
 

@@ -37,16 +37,8 @@ class Horus : public Firmware {
     // Where it stands at first is 0, within its limits or not.
     axes_ = {{wishes_.front().name, true, false, endless, low, high, kSpeedMaximum, kStep,
               std::pair(std::min(low, 0.0), std::max(high, 0.0))}};
-    if (const Status reset = restart(); !reset) {
-      return reset;
-    }
-    for (int laser = 1; laser <= lasers_; ++laser) {
-      if (const Status off = command(horus::laser(laser, false)); !off) {
-        return off;
-      }
-    }
     homed_ = true;  // a turntable: where it stands is its zero
-    return command("M17");
+    return begin_at(0);
   }
 
   Status start_move(std::size_t /*axis*/, double position, double speed) override {
@@ -55,13 +47,15 @@ class Horus : public Firmware {
     }
     // Its ok comes when the move is accepted in some versions and when it has ended in others: read() looks,
     // and goes by the time that the way takes where there is no report either.
-    Status sent = talk_.send(horus::move(deg_from_rad(position)));
+    if (const Status sent = talk_.send(horus::move(deg_from_rad(position - zero_))); !sent) {
+      return sent;
+    }
     start_ = target_;
     target_ = position;
     move_begins_ = std::max(Clock::now(), move_ends_);
     move_ends_ = move_begins_ + duration_of(std::abs(target_ - start_) / speed);
     awaits_ok_ = true;
-    return sent;
+    return {};
   }
 
   Result<Position> read() override {
@@ -103,16 +97,20 @@ class Horus : public Firmware {
     out.uncertainty_ns = (answered - asked) / 2;
     out.moving = awaits_ok_ || (report ? report->moving : Clock::now() < move_ends_);
     out.alarm = report && report->alarm;
-    out.axes = {report ? rad_from_deg(report->degrees) : asked_for_now()};
+    out.axes = {report ? zero_ + rad_from_deg(report->degrees) : asked_for_now()};
     return out;
   }
 
   Status set_laser(int laser, double power) override { return command(horus::laser(laser + 1, power > 0)); }
 
-  /// This firmware has no way to brake: a reset ends the motion, and its position counts from there.
+  /// This firmware has no way to brake: a reset ends the motion, and its own count begins at 0 there.
   Status stop() override {
-    if (awaits_ok_ || moving()) {
-      return connect();
+    const Result<Position> now = read();
+    if (!now) {
+      return std::unexpected(now.error());
+    }
+    if (now->moving) {
+      return begin_at(now->axes.front());
     }
     for (int laser = 0; laser < lasers_; ++laser) {
       if (const Status off = set_laser(laser, 0); !off) {
@@ -127,7 +125,8 @@ class Horus : public Firmware {
                 "where it stands when it is opened is its zero");
   }
 
-  Status halt() override { return connect(); }
+  /// The bytes of panic() have reset it already: what it reports no longer tells where that was.
+  Status halt() override { return begin_at(asked_for_now()); }
 
   [[nodiscard]] std::string panic() const override { return "\x18\r\nM70T1\r\nM70T2\r\nM18\r\n"; }
 
@@ -139,15 +138,24 @@ class Horus : public Firmware {
     return gone < whole ? start_ + (target_ - start_) * std::max(gone / whole, 0.0) : target_;
   }
 
-  bool moving() {
-    const Result<Position> now = read();
-    return now && now->moving;
+  /// Restarts it, dark, where it stands at `position`, rad: there its limits stay as they are.
+  Status begin_at(double position) {
+    zero_ = position;
+    if (const Status reset = restart(); !reset) {
+      return reset;
+    }
+    for (int laser = 1; laser <= lasers_; ++laser) {
+      if (const Status off = command(horus::laser(laser, false)); !off) {
+        return off;
+      }
+    }
+    return command("M17");
   }
 
   Status restart() {
     talk_.forget();
     awaits_ok_ = false;
-    start_ = target_ = 0;
+    start_ = target_ = zero_;
     move_begins_ = move_ends_ = {};
     const Clock::time_point until = Clock::now() + kBoot;
     while (Clock::now() < until) {
@@ -220,6 +228,7 @@ class Horus : public Firmware {
   std::vector<AxisWish> wishes_;
   bool reports_ = false;
   bool awaits_ok_ = false;
+  double zero_ = 0;                                ///< where its own count is 0, rad
   double start_ = 0, target_ = 0;                  ///< of the last move
   Clock::time_point move_begins_{}, move_ends_{};  ///< as its speed has it
 };

@@ -120,10 +120,14 @@ class Tmcl : public Firmware {
     }
     // With the target where it stands nothing can start again by itself.
     const Clock::time_point until = Clock::now() + kAnswer;
-    for (std::size_t k = 0; k < axes_.size() && Clock::now() < until;) {
+    for (std::size_t k = 0; k < axes_.size();) {
       const Result<std::int32_t> speed = axis(AxisParameter::kActualSpeed, k);
       if (!speed) {
         return std::unexpected(speed.error());
+      }
+      if (*speed != 0 && Clock::now() > until) {
+        return fail(ErrorKind::kDevice, "the motor still turns", where_,
+                    "see that it stands, or switch off its power");
       }
       k += *speed == 0 ? 1 : 0;
     }

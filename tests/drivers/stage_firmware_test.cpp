@@ -9,6 +9,7 @@
 #include <thread>
 #include <utility>
 
+#include "core/units.h"
 #include "drivers/usb_stage/controller.h"
 #include "tests/drivers/peers/firmware_sims.h"
 #include "tests/support/comma_locale.h"
@@ -153,6 +154,63 @@ TEST(StageFirmware, AStopOfOneAxisLeavesTheOtherFreeToMove) {
   EXPECT_EQ(board.at(), 2000);
   const Status other = controller->move(1, 1, 50, false);
   EXPECT_TRUE(other) << other.error().line();
+}
+
+/// What is heavy, or brakes gently, needs longer than anybody waits for.
+TEST(StageFirmware, AMotorThatStillTurnsIsNotCalledStopped) {
+  Board board("tmcl-heavy");
+  auto controller = open(board, tmcl);
+  ASSERT_TRUE(controller->set_laser(0, 1));
+  ASSERT_TRUE(controller->move(0, -500, 5, true));
+  for (const Status& stopped : {controller->stop(), controller->emergency_stop()}) {
+    ASSERT_FALSE(stopped);
+    EXPECT_EQ(stopped.error().kind, ErrorKind::kDevice);
+  }
+  EXPECT_TRUE(board.moving());
+  EXPECT_EQ(board.laser(), 0);
+  // Nor does one that is opened meanwhile say that it stands.
+  const auto unsure = controller->read();
+  ASSERT_FALSE(unsure);
+  EXPECT_THAT(unsure.error().line(), HasSubstr("the motor still turns"));
+  while (board.moving()) {
+    std::this_thread::sleep_for(10ms);
+  }
+  EXPECT_TRUE(controller->read());
+  EXPECT_TRUE(controller->stop());
+}
+
+/// It can only be reset, and counts from there: its limits are still those about where it was opened.
+TEST(StageFirmware, ATurntableThatIsStoppedOnItsWayKeepsItsZero) {
+  const Maker limited = [](Link& link) {
+    return make_horus(link, {{.name = "x", .rotary = true, .limits = {{-90, 90}}}}, "bench");
+  };
+  for (const char* name : {"horus", "horus-silent", "horus-silent-quick"}) {
+    Board board(name);
+    const auto controller = open(board, limited);
+    ASSERT_TRUE(controller->move(0, rad_from_deg(80), rad_from_deg(100), true));
+    while (controller->read()->position.axes[0] < rad_from_deg(30)) {
+    }
+    ASSERT_TRUE(controller->stop());
+    const double there = deg_from_rad(controller->read()->position.axes[0]);
+    EXPECT_GE(there, 30) << name;
+    EXPECT_LT(there, 80) << name;
+    EXPECT_EQ(board.at(), 0) << name << ": as it counts itself";
+    const Status moved = controller->move(0, rad_from_deg(85), rad_from_deg(400), false);
+    ASSERT_TRUE(moved) << name << ": " << moved.error().line();
+    EXPECT_NEAR(board.at(), 85 - there, 1e-3) << name;
+    EXPECT_NEAR(controller->read()->position.axes[0], rad_from_deg(85), 1e-4) << name;
+    EXPECT_EQ(controller->move(0, rad_from_deg(91), 0, true).error().kind, ErrorKind::kUsage) << name;
+    // Another stop at rest changes nothing.
+    ASSERT_TRUE(controller->stop());
+    EXPECT_NEAR(controller->read()->position.axes[0], rad_from_deg(85), 1e-4) << name;
+    // An emergency stop has reset it before anybody asked where it was: by its speed.
+    ASSERT_TRUE(controller->move(0, rad_from_deg(-80), rad_from_deg(100), true));
+    while (controller->read()->position.axes[0] > rad_from_deg(40)) {
+    }
+    ASSERT_TRUE(controller->emergency_stop());
+    EXPECT_LE(controller->read()->position.axes[0], rad_from_deg(40)) << name;
+    EXPECT_GT(controller->read()->position.axes[0], rad_from_deg(-80)) << name;
+  }
 }
 
 /// Neither a report nor an ok says when it stands: the time that the way takes does.

@@ -6,10 +6,12 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cstdlib>
 #include <mutex>
 #include <string>
 
 #include "acquisition/session_store.h"
+#include "build_paths.h"
 #include "station/engine.h"
 #include "tests/support/temporary_folder.h"
 
@@ -17,6 +19,7 @@ namespace dubsar {
 namespace {
 
 using ::testing::HasSubstr;
+using ::testing::Not;
 using ::testing::SizeIs;
 
 constexpr const char* kSmallTablet = "sim:?seed=1&size=20x16x8&spacing=0.25&noise=0.02";
@@ -26,7 +29,7 @@ class Halt : public ::testing::Test {
   /// A run on the session that is halted at row `at` of its first scan; -1: when it first waits for somebody.
   Result<EngineResult> run_until(int at, bool paced = false) {
     EngineOptions options;
-    options.device = kSmallTablet;
+    options.device = device_;
     options.session = session_;
     options.automatic = options.paced = paced;
     Engine* running = nullptr;
@@ -48,6 +51,7 @@ class Halt : public ::testing::Test {
     const auto store = SessionStore::open(session_, SessionStore::Access::kReadOnly);
     return store ? store->scans().value_or(std::vector<StoredScan>{}) : std::vector<StoredScan>{};
   }
+  std::string device_ = kSmallTablet;
   test::TemporaryFolder folder_;
   std::filesystem::path session_ = folder_.path() / "s";
   JobContext job_;
@@ -68,6 +72,22 @@ TEST_F(Halt, InMidScanKeepsWhatCameAndSaysHowToGoOn) {
   ASSERT_TRUE(again.has_value()) << again.error().line();
   EXPECT_FALSE(again->device_error.has_value());
   EXPECT_THAT(stored(), SizeIs(2));
+}
+
+TEST_F(Halt, OfADeviceThatDoesNotObeySaysSo) {
+  ::setenv("DUBSAR_DRIVER_PATH", DUBSAR_BINARY_DIR "/lib/dubsar/test_drivers/hang", 1);
+  device_ = "hang:never?whole=0&deaf=1";
+  const Result<EngineResult> halted = run_until(30);
+  ::unsetenv("DUBSAR_DRIVER_PATH");
+  ASSERT_TRUE(halted.has_value()) << halted.error().line();
+  ASSERT_TRUE(halted->device_error.has_value());
+  EXPECT_EQ(exit_status(halted->device_error->kind), 3);
+  const std::string said = halted->device_error->line();
+  EXPECT_THAT(said, HasSubstr("the emergency stop was pressed, but laser and motors may still be on: the "
+                              "controller does not answer; pull the plugs of laser and stage"));
+  EXPECT_THAT(said_, HasSubstr(said));
+  EXPECT_THAT(said_, Not(HasSubstr("nothing moves")));
+  EXPECT_THAT(stored(), SizeIs(1));
 }
 
 TEST_F(Halt, OfARunThatWaitsEndsIt) {

@@ -1,13 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright The Dubsar developers
 // A device whose driver does not come back: the command that was stopped ends without it, and the session is
-// whole and free.
+// whole and free. And one that comes back and could not be stopped.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <csignal>
 #include <fstream>
+#include <string>
+#include <vector>
 
 #include "build_paths.h"
 #include "tests/station/support/command.h"
@@ -92,6 +94,27 @@ TEST_F(HungDevice, WhoeverInsistsWaitsForNothing) {
   const Outcome ended = running.wait();
   EXPECT_FALSE(ended.timed_out);
   EXPECT_NE(ended.status, 0);
+}
+
+/// Nobody may be told that it stands, dark, when its driver could not make it.
+TEST_F(HungDevice, OneThatCouldNotBeStoppedIsNotCalledStopped) {
+  std::ofstream(in("a.toml"))
+      << "name = \"plane\"\ncertificate = \"c\"\nplane = true\n[limit]\nflatness_um = 60\n";
+  const std::string deaf = device(0) + "&deaf=1";
+  for (const std::vector<std::string>& command :
+       {std::vector<std::string>{"scan", "--device", deaf, "--session", in("s"), "--json"},
+        {"calibrate", "--verify", in("a.toml"), deaf, "--json"}}) {
+    RunningCommand running(command, with_plugin());
+    ASSERT_TRUE(running.says("hang: scans on")) << running.log_until_now();
+    running.send(SIGINT);
+    const Outcome ended = running.wait();
+    EXPECT_FALSE(ended.timed_out);
+    EXPECT_EQ(ended.status, 3) << ended.err;
+    EXPECT_THAT(ended.err, HasSubstr("stopped, but laser and motors may still be on: the controller does not "
+                                     "answer; pull the plugs of laser and stage, or switch off their power"));
+    EXPECT_THAT(ended.json()["error"]["what"].get<std::string>(), HasSubstr("may still be on")) << ended.out;
+  }
+  EXPECT_EQ(run_command({"verify", in("s")}).status, 0);
 }
 
 }  // namespace

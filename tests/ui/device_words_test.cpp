@@ -107,6 +107,18 @@ TEST(DeviceWords, AnErrorOfADeviceIsGermanAndItsNameStays) {
             "Referenzfahrt");
 }
 
+TEST(DeviceWords, AStopThatWasNotObeyedIsGerman) {
+  const Error deaf{ErrorKind::kDevice,
+                   "the emergency stop was pressed, but laser and motors may still be on: the controller "
+                   "cannot be reached, and its laser or its motor was on",
+                   "2341:0043", "pull the plugs of laser and stage, or switch off their power"};
+  EXPECT_EQ(
+      translated(deaf, Language::kGerman),
+      "2341:0043: der Not-Halt wurde gedrückt, aber Laser und Motoren können noch an sein: die Steuerung "
+      "ist nicht zu erreichen, und ihr Laser oder ihr Motor war an; die Stecker von Laser und Tisch "
+      "ziehen, oder ihren Strom abschalten");
+}
+
 TEST(DeviceWords, OtherUnitsAreSaidInGermanAndWithoutCommands) {
   const ScanSize metres{.scale_mm = 0.05, .spacing_mm = 0.0001};
   const ScanSize before{.scale_mm = 50, .spacing_mm = 0.1};

@@ -48,6 +48,12 @@ constexpr EnginePhrase kPhrases[] = {
     // the emergency stop
     {"the emergency stop was pressed: lasers are off and nothing moves",
      "der Not-Halt wurde gedrückt: die Laser sind aus, nichts bewegt sich"},
+    {"the emergency stop was pressed, but laser and motors may still be on: ",
+     "der Not-Halt wurde gedrückt, aber Laser und Motoren können noch an sein: "},
+    {"stopped, but laser and motors may still be on: ",
+     "angehalten, aber Laser und Motoren können noch an sein: "},
+    {"pull the plugs of laser and stage, or switch off their power",
+     "die Stecker von Laser und Tisch ziehen, oder ihren Strom abschalten"},
     {"see that all is clear, then scan: a stage with switches is homed first",
      "nachsehen, dass alles frei ist, dann scannen: ein Tisch mit Schaltern fährt sie zuerst an"},
     // why a scan is unsure

@@ -268,6 +268,7 @@ class HorusSim : public FirmwareSim {
 /// target.
 class TmclSim : public FirmwareSim {
  public:
+  double brake_s = 0;  ///< how long motor 0 goes on when it is to stop
   void power_up() override {
     set(1234);
     laser = 0;
@@ -322,10 +323,14 @@ class TmclSim : public FirmwareSim {
     Motor& one = motors_[which];
     switch (command) {
       case 3:
-        drive(which, where(which, now), now);
+        if (which == 1 || !std::exchange(brakes_, brake_s > 0)) {
+          const double on = which == 0 && moving(now) ? brake_s * one.most : 0;
+          drive(which, where(which, now) + std::copysign(on, target_ - at(now)), now);
+        }
         return 100;
       case 4:
         one.target = value;
+        brakes_ = brakes_ && which == 1;
         drive(which, value, now);
         return 100;
       case 5:
@@ -370,6 +375,7 @@ class TmclSim : public FirmwareSim {
     double most = 1000;
     double homing_until = -1;
   };
+  bool brakes_ = false;  ///< motor 0: it is on its way to stand already
   std::string bytes_;
   Motor motors_[2];
   StageLaw second_;  ///< way of motor 1; that of motor 0 is the board's own
@@ -385,6 +391,7 @@ std::unique_ptr<FirmwareSim> make_firmware_sim(const std::string& name) {
     return std::make_unique<HorusSim>(name == "horus", name != "horus-silent-quick");
   }
   auto out = std::make_unique<TmclSim>();
+  out->brake_s = name == "tmcl-heavy" ? 4 : 0;
   out->power_up();
   return out;
 }

@@ -39,7 +39,8 @@ class FirmwareSim {
 };
 
 /// grbl, horus, tmcl; of these also grbl-without-switches, and horus-silent, which answers no `?` and says ok
-/// when the table stands, or when the move is accepted: horus-silent-quick.
+/// when the table stands, or when the move is accepted: horus-silent-quick; and tmcl-heavy, whose first motor
+/// takes 4 s to stand.
 [[nodiscard]] std::unique_ptr<FirmwareSim> make_firmware_sim(const std::string& name);
 
 }  // namespace dubsar::test

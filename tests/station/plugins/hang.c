@@ -2,8 +2,9 @@
  * Copyright The Dubsar developers */
 
 /* A scanner whose driver does not come back: some scans of a bumpy field are whole, each later one hangs at a
- * row of it, whatever it is told, until the file that the locator names is there. On standard error it says
- * that it hangs and that it was told to stop. */
+ * row of it, whatever it is told, until the file that the locator names is there. With the option `deaf` it
+ * goes on with that scan for ever instead, and answers that it could not be stopped. On standard error it
+ * says that it hangs and that it was told to stop. */
 #include <math.h>
 #include <stdatomic.h>
 #include <stdio.h>
@@ -17,6 +18,7 @@ enum { COLS = 120, ROWS = 100, HANGS_AT = 20 };
 
 struct dubsar_device {
   long whole; /* scans to come that do not hang */
+  int deaf;
   atomic_int told;
   char release[1024];
 };
@@ -24,8 +26,13 @@ struct dubsar_device {
 static int32_t describe_options(dubsar_setting_callback callback, void* user, dubsar_error* error) {
   const dubsar_setting whole = {
       .struct_size = sizeof whole, .type = DUBSAR_TYPE_INTEGER, .flags = 2, .key = "whole", .help = "scans"};
+  const dubsar_setting deaf = {.struct_size = sizeof deaf,
+                               .type = DUBSAR_TYPE_INTEGER,
+                               .flags = 2,
+                               .key = "deaf",
+                               .help = "to stop()"};
   (void)error;
-  return callback(user, &whole) != 0 ? DUBSAR_CANCELLED : DUBSAR_OK;
+  return callback(user, &whole) != 0 || callback(user, &deaf) != 0 ? DUBSAR_CANCELLED : DUBSAR_OK;
 }
 
 static int32_t discover(dubsar_device_callback callback, void* user, dubsar_error* error) {
@@ -39,7 +46,15 @@ static int32_t open_device(const char* locator, const dubsar_option* options, ui
   if (*device == NULL) {
     return plain_problem(error, DUBSAR_INTERNAL, "no memory");
   }
-  (*device)->whole = count > 0 ? strtol(options[0].value, NULL, 10) : 1;
+  (*device)->whole = 1;
+  for (uint32_t i = 0; i < count; ++i) {
+    const long value = strtol(options[i].value, NULL, 10);
+    if (strcmp(options[i].key, "deaf") == 0) {
+      (*device)->deaf = value != 0;
+    } else {
+      (*device)->whole = value;
+    }
+  }
   strncpy((*device)->release, locator, sizeof(*device)->release - 1);
   return DUBSAR_OK;
 }
@@ -59,8 +74,13 @@ static int32_t capabilities(dubsar_device* device, dubsar_capabilities* out, dub
   return plain_give_capabilities(&filled, out);
 }
 
-static void hang(const dubsar_device* device) {
+static void hang(const dubsar_device* device, int64_t row) {
   const struct timespec pause = {0, 20000000};
+  if (device->deaf) {
+    fputs(row == HANGS_AT ? "hang: scans on\n" : "", stderr);
+    thrd_sleep(&pause, NULL);
+    return;
+  }
   fputs("hang: hangs\n", stderr);
   for (FILE* file = NULL; file == NULL;) {
     thrd_sleep(&pause, NULL);
@@ -75,6 +95,7 @@ static void hang(const dubsar_device* device) {
 static int32_t scan(dubsar_device* device, const dubsar_sink* sink, dubsar_error* error) {
   const float high = 0.4f + 0.01f * (float)device->whole; /* no two scans are the same */
   const int hangs = device->whole-- <= 0;
+  const int64_t rows = hangs && device->deaf ? INT64_MAX : ROWS;
   float x[COLS], y[COLS], z[COLS];
   dubsar_scan_end end = {.struct_size = sizeof end};
   dubsar_scan_info info;
@@ -88,11 +109,11 @@ static int32_t scan(dubsar_device* device, const dubsar_sink* sink, dubsar_error
   if (sink->begin(sink->user, &info) != 0) {
     return plain_cancelled(sink, &end, error);
   }
-  for (int64_t row = 0; row < ROWS; ++row) {
+  for (int64_t row = 0; row < rows; ++row) {
     const dubsar_profile profile = {
         .struct_size = sizeof profile, .count = COLS, .row = row, .x = x, .y = y, .z = z};
-    if (hangs && row == HANGS_AT) {
-      hang(device);
+    if (hangs && (row == HANGS_AT || (device->deaf && row > HANGS_AT))) {
+      hang(device, row);
     }
     for (int col = 0; col < COLS; ++col) {
       x[col] = 0.2f * (float)col;
@@ -110,11 +131,10 @@ static int32_t scan(dubsar_device* device, const dubsar_sink* sink, dubsar_error
 
 /* It comes back, as it must; what it was to stop does not. */
 static int32_t stop(dubsar_device* device, dubsar_error* error) {
-  (void)error;
   if (atomic_exchange(&device->told, 1) == 0) {
     fputs("hang: told to stop\n", stderr);
   }
-  return DUBSAR_OK;
+  return device->deaf ? plain_problem(error, DUBSAR_DEVICE, "the controller does not answer") : DUBSAR_OK;
 }
 
 const dubsar_driver* dubsar_driver_entry(void) {
