@@ -106,6 +106,9 @@ Result<LiveCalibration> LiveCalibration::start(const LiveCalibrationPlan& given,
     if (!axis) {
       return std::unexpected(axis.error());
     }
+    if (Status zero = check_zero(*axis, stage, *plan.set.motion, stage.uri()); !zero) {
+      return std::unexpected(zero.error());
+    }
     const StopsWhenCancelled watch(stage, job);
     if (Status homed = home_once(stage, plan.axis); !homed) {
       return std::unexpected(homed.error());
@@ -185,9 +188,11 @@ Result<LiveCalibration::Taken> LiveCalibration::take_pose(const JobContext& job)
     return std::unexpected(started.error());
   }
   const StreamGuard stream(camera_);
-  const LaserGuard dark(stage_, static_cast<std::uint32_t>(plan_.laser));
+  LaserGuard dark(stage_, static_cast<std::uint32_t>(plan_.laser));
   const StopsWhenCancelled watch(stage_, job);
-  return pose_while_streaming(job);
+  Result<Taken> taken = pose_while_streaming(job);
+  const Status off = dark.off(taken ? Status{} : std::unexpected(taken.error()));
+  return off ? std::move(taken) : std::unexpected(off.error());
 }
 
 Result<LiveCalibration::Taken> LiveCalibration::pose_while_streaming(const JobContext& job) {
@@ -196,7 +201,8 @@ Result<LiveCalibration::Taken> LiveCalibration::pose_while_streaming(const JobCo
   if (plan_.set.motion == MotionKind::kGalvanometer) {
     // A third of the poses each, so that the axis shows.
     const double mirror = plan_.from + 0.5 * (plan_.to - plan_.from) * static_cast<double>(number % 3);
-    if (Status moved = stage_.move({static_cast<std::uint32_t>(plan_.axis), mirror, 0, false}); !moved) {
+    if (Status moved = stage_.move({static_cast<std::uint32_t>(plan_.axis), mirror, plan_.speed, false});
+        !moved) {
       return std::unexpected(moved.error());
     }
     view.mirror_position = mirror;
@@ -270,7 +276,7 @@ Result<LiveCalibration::Taken> LiveCalibration::stops_while_streaming(const JobC
   for (int i = 0; i < plan_.stops; ++i) {
     job.progress("stage", static_cast<double>(i) / plan_.stops);
     const double there = plan_.from + (plan_.to - plan_.from) * i / std::max(1, plan_.stops - 1);
-    if (Status moved = stage_.move({axis, there, 0, false}); !moved) {
+    if (Status moved = stage_.move({axis, there, plan_.speed, false}); !moved) {
       return std::unexpected(moved.error());
     }
     const Result<double> position = position_of(stage_, axis);

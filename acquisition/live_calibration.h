@@ -23,6 +23,7 @@ struct LiveCalibrationPlan {
   int laser = 0;
   double laser_power = 1;
   double from = 0, to = 0;  ///< of the stage, where it takes the board (or turns the mirror); mm or radians
+  double speed = 0;         ///< of it, mm/s or rad/s; 0: as the stage likes
   int stops = 5;
   /// In place of those of `set`, or of the folder that is gone on with.
   std::optional<double> depth_range_mm, plate_margin_mm;

@@ -20,14 +20,28 @@ constexpr std::size_t kMostOfBlock = 4;
 }  // namespace
 
 PlacedProfiles::PlacedProfiles(ProfileSink& sink, PositionTrack& track, Scan scan)
-    : sink_(sink), track_(track), scan_(std::move(scan)) {}
+    : sink_(sink),
+      track_(track),
+      scan_(std::move(scan)),
+      pitch_(scan_.step, scan_.speed, scan_.motion.kind != MotionKind::kLinear) {}
 
 bool PlacedProfiles::begin(const ScanInfo& info) {
-  ScanInfo out = info;
+  info_ = info;
+  if (info.timestamp_ns ==
+      0) {  // the camera's profiles are timed on a clock that began when this machine did
+    info_->timestamp_ns = wall_clock_ns();
+  }
   flat_ = !info.view.motion_per_row_mm.isZero();
+  return true;
+}
+
+/// Tells the sink of the scan, and hands on the rows that waited until it was known how far apart they come.
+bool PlacedProfiles::begin_sink() {
+  ScanInfo& out = *info_;
+  const double pitch = pitch_.value();
   const bool linear = scan_.motion.kind == MotionKind::kLinear;
-  out.view.motion_per_row_mm = linear ? Eigen::Vector3d(scan_.step * scan_.motion.direction)
-                                      : Eigen::Vector3d(Eigen::Vector3d::Zero());
+  out.view.motion_per_row_mm =
+      linear ? Eigen::Vector3d(pitch * scan_.motion.direction) : Eigen::Vector3d(Eigen::Vector3d::Zero());
   const RigidTransform there =
       scan_.motion.zero_from_camera(scan_.motion.view_position(scan_.start, scan_.end()));
   for (std::optional<Eigen::Vector3d>* at : {&out.view.laser_mm, &out.view.camera_mm}) {
@@ -38,14 +52,32 @@ bool PlacedProfiles::begin(const ScanInfo& info) {
   out.view.direction = there.rotation * out.view.direction;
   out.expected_rows = scan_.rows;
   // On a turntable it goes by how far from the axis the clay is: by the grid's own samples.
-  out.spacing_mm = linear ? std::max(out.spacing_mm, scan_.step * scan_.motion.direction.norm()) : 0.0;
+  out.spacing_mm = linear ? std::max(out.spacing_mm, pitch * scan_.motion.direction.norm()) : 0.0;
   out.device = scan_.device;
-  if (out.timestamp_ns == 0) {  // the camera's profiles are timed on a clock that began when this machine did
-    out.timestamp_ns = wall_clock_ns();
-  }
   begun_ = sink_.begin(out);
   cancelled_ = !begun_;
-  return begun_;
+  for (const auto& [row, timestamp_ns] : std::exchange(waiting_, {})) {
+    if (!cancelled_) {
+      give(row, timestamp_ns);
+    }
+  }
+  return !cancelled_;
+}
+
+void PlacedProfiles::give(const Row& row, std::int64_t timestamp_ns) {
+  Profile out;
+  out.row = row.number - *first_row_;
+  out.x = row.x;
+  out.y = row.y;
+  out.z = row.z;
+  out.valid = row.valid;
+  out.intensity = row.intensity;
+  out.confidence = row.confidence;
+  out.rgb = row.rgb;
+  out.encoder = row.encoder;
+  out.timestamp_ns = timestamp_ns;
+  ++tally_.profiles_sent;
+  cancelled_ = !sink_.profile(out);
 }
 
 bool PlacedProfiles::is_behind() const {
@@ -95,6 +127,9 @@ void PlacedProfiles::end(const ScanTally& tally) {
 
 void PlacedProfiles::flush() {
   [[maybe_unused]] const bool more = hand_on();
+  if (info_ && !begun_ && !cancelled_) {
+    begin_sink();
+  }
 }
 
 bool PlacedProfiles::hand_on() {
@@ -112,6 +147,17 @@ bool PlacedProfiles::hand_on() {
   return true;
 }
 
+/// Where the stage was when the profiles before the first that was placed were taken nobody knows, or there
+/// were none: rows that are lost, as RowCount has it. A profile placed before it was none of the scan.
+void PlacedProfiles::begin_rows(std::int64_t row, double position) {
+  if (first_row_) {
+    return;
+  }
+  const double missed = sure_ ? 0.0 : std::floor((position - scan_.start) / scan_.step + 0.5);
+  first_row_ = row - static_cast<std::int64_t>(std::max(0.0, missed));
+  tally_.profiles_dropped += static_cast<std::uint64_t>(row - *first_row_);
+}
+
 /// Rows whose place was not known lie evenly between those around them: the ones inside the scan are lost.
 void PlacedProfiles::count_unsure(std::int64_t row, double position) {
   for (const std::int64_t one : std::exchange(unsure_, {})) {
@@ -119,9 +165,12 @@ void PlacedProfiles::count_unsure(std::int64_t row, double position) {
         sure_ ? (position - sure_->second) / static_cast<double>(row - sure_->first) : scan_.step;
     const double there = position - pitch * static_cast<double>(row - one);
     if (there >= scan_.start - 0.5 * scan_.step && there < scan_.end() + 0.5 * scan_.step) {
+      begin_rows(one, there);
       ++tally_.profiles_dropped;
-      first_row_ = first_row_ ? first_row_ : std::optional(one);
     }
+  }
+  if (position >= scan_.start - 0.5 * scan_.step && position < scan_.end() + 0.5 * scan_.step) {
+    begin_rows(row, position);
   }
   sure_ = {row, position};
 }
@@ -159,20 +208,15 @@ bool PlacedProfiles::place(Row& row, std::int64_t timestamp_ns) {
     row.y[i] = static_cast<float>(p.y());
     row.z[i] = static_cast<float>(p.z());
   }
-  first_row_ = first_row_ ? first_row_ : std::optional(row.number);
-  Profile out;
-  out.row = row.number - *first_row_;
-  out.x = row.x;
-  out.y = row.y;
-  out.z = row.z;
-  out.valid = row.valid;
-  out.intensity = row.intensity;
-  out.confidence = row.confidence;
-  out.rgb = row.rgb;
-  out.encoder = row.encoder;
-  out.timestamp_ns = timestamp_ns;
-  ++tally_.profiles_sent;
-  cancelled_ = !sink_.profile(out);
+  pitch_.add(row.number, timestamp_ns, position);
+  if (begun_) {
+    give(row, timestamp_ns);
+  } else {
+    waiting_.emplace_back(std::move(row), timestamp_ns);
+    if (pitch_.is_known()) {
+      begin_sink();
+    }
+  }
   return !cancelled_ && !complete_;
 }
 

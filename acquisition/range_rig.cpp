@@ -28,6 +28,9 @@ Status RangeRig::check(const RigFile& file, const std::string& where) {
     return fail(ErrorKind::kUsage, "nobody says how fast the stage is to go", where,
                 "give speed_mm_s or speed_deg_s: the camera's rate of profiles times the step");
   }
+  if (Status unit = check_unit(file, file.motion->kind, where); !unit) {
+    return unit;
+  }
   return check_turn(file, file.motion->kind, where);
 }
 
@@ -60,16 +63,17 @@ Status RangeRig::scan(ProfileSink& sink) {
     return homed;
   }
   std::optional<LaserGuard> dark;  // goes last: a controller may take it for behind the move that still runs
-  const Status status = run(sink, dark);
+  Status status = run(sink, dark);
   if (!status) {
     [[maybe_unused]] const Status said = stage_.stop();
   }
-  return status;
+  return dark ? dark->off(std::move(status)) : status;
 }
 
 Status RangeRig::run(ProfileSink& sink, std::optional<LaserGuard>& dark) {
   const auto number = static_cast<std::uint32_t>(file_.axis);
-  const PlacedProfiles::Scan scan{*file_.motion, file_.start, file_.step, file_.rows, device_id_};
+  const PlacedProfiles::Scan scan{*file_.motion, file_.start, file_.step,
+                                  file_.rows,    device_id_,  file_.speed};
   const Travel travel = travel_of(file_, axis_, file_.speed);
   if (Status there = stage_.move({number, travel.from, file_.speed, false}); !there) {
     return there;
@@ -126,6 +130,9 @@ Status RangeRig::run(ProfileSink& sink, std::optional<LaserGuard>& dark) {
     status = stopped_short(file_, axis_.rotary, watch.track().last().value_or(travel.from));
   }
   if (placed.begun()) {
+    if (const auto remark = placed.pitch_remark()) {
+      sink.remark(*remark);
+    }
     sink.end(placed.tally());
   }
   return status;

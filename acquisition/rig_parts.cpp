@@ -24,6 +24,31 @@ std::chrono::milliseconds milliseconds_of(double seconds) {
 
 }  // namespace
 
+Status put_off(Device& stage, std::uint32_t laser) {
+  const Status off = stage.set_laser(laser, 0);
+  return off ? off
+             : fail(ErrorKind::kDevice, "the laser may still be on: " + off.error().what, stage.uri(),
+                    "pull its plug before anybody reaches in");
+}
+
+Status LaserGuard::off(Status so_far) {
+  if (is_off_) {
+    return so_far;
+  }
+  const Status dark = put_off(stage_, laser_);
+  is_off_ = dark.has_value();
+  if (is_off_) {
+    return so_far;
+  }
+  if (so_far || so_far.error().kind == ErrorKind::kCancelled) {
+    return dark;
+  }
+  Error both = so_far.error();
+  both.what += "; " + dark.error().what;
+  both.mend = dark.error().mend + (both.mend.empty() ? "" : "; " + both.mend);
+  return std::unexpected(std::move(both));
+}
+
 Status put_camera_settings(const RigFile& file, Device& camera, const std::string& where) {
   return put_settings(camera, file.camera_settings, where);
 }
@@ -80,6 +105,26 @@ Status check_turn(const RigFile& file, MotionKind kind, const std::string& where
               "the scan turns the tablet by " + position_text(true, end_of(file) - file.start) +
                   ", and what a scan sees is judged from one side",
               where, "let it turn by 120 degrees at most, and turn the tablet between scans");
+}
+
+Status check_unit(const RigFile& file, MotionKind kind, const std::string& where) {
+  if (file.turns == (kind != MotionKind::kLinear)) {
+    return {};
+  }
+  return file.turns ? bad_input(where, "the scan is said in degrees, and the rig's stage goes straight",
+                                "say from_mm, to_mm and step_mm")
+                    : bad_input(where, "the scan is said in millimetres, and the rig's stage turns",
+                                "say from_deg, to_deg and step_deg");
+}
+
+Status check_zero(const StageAxis& axis, const Device& stage, MotionKind kind, const std::string& where) {
+  if (kind != MotionKind::kGalvanometer || axis.can_home) {
+    return {};
+  }
+  return bad_input(where,
+                   "the mirror has no reference switch: where " + stage.uri() +
+                       " counts from is another place each time it is switched on",
+                   "give its axis a switch, and tell the controller of it");
 }
 
 std::string position_text(bool rotary, double position) {

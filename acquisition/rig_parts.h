@@ -19,17 +19,25 @@ namespace dubsar {
 /// where it was.
 inline constexpr double kSureSteps = 0.25;
 
-/// Puts a laser off when it goes.
+/// Puts a laser off. kDevice where the stage does not say that it is off: then people have to.
+[[nodiscard]] Status put_off(Device& stage, std::uint32_t laser);
+
+/// Puts a laser off when it goes, if nobody did before.
 class LaserGuard {
  public:
   LaserGuard(Device& stage, std::uint32_t laser) : stage_(stage), laser_(laser) {}
   LaserGuard(const LaserGuard&) = delete;
   LaserGuard& operator=(const LaserGuard&) = delete;
-  ~LaserGuard() { [[maybe_unused]] const Status said = stage_.set_laser(laser_, 0); }
+  ~LaserGuard() { [[maybe_unused]] const Status said = off({}); }
+
+  /// Puts it off now. `so_far` is how it went until then: a laser that may be lit is told whatever that was,
+  /// before all else where nothing failed or somebody stopped it.
+  [[nodiscard]] Status off(Status so_far);
 
  private:
   Device& stage_;
   std::uint32_t laser_;
+  bool is_off_ = false;
 };
 
 /// Puts the settings of the file, in its order. kUsage: one that the camera does not have or take.
@@ -47,6 +55,14 @@ Status put_camera_settings(const RigFile& file, Device& camera, const std::strin
 /// turn, by which its samples' normals, what hides what and what is red are told: from 60° on its ends would
 /// be judged as clay that was hardly seen, and beyond 90° as seen from behind.
 [[nodiscard]] Status check_turn(const RigFile& file, MotionKind kind, const std::string& where);
+
+/// kBadInput: a scan that is said in the unit of another kind of stage than this.
+[[nodiscard]] Status check_unit(const RigFile& file, MotionKind kind, const std::string& where);
+
+/// kBadInput: a mirror that counts from wherever it stood when it was switched on. Its zero is where the
+/// laser plane was calibrated: a degree beside it is millimetres of depth.
+[[nodiscard]] Status check_zero(const StageAxis& axis, const Device& stage, MotionKind kind,
+                                const std::string& where);
 
 /// A place of an axis as people say it, in mm or degrees.
 [[nodiscard]] std::string position_text(bool rotary, double position);

@@ -87,10 +87,18 @@ Result<RigScanner> RigScanner::make(const RigFile& file, const RigCalibration& c
   if (Status status = fits(file, calibration, *of_camera, where); !status) {
     return std::unexpected(status.error());
   }
-  if (const Result<StageAxis> axis = axis_for_scan(file, stage, calibration.motion.kind, where); !axis) {
+  const MotionKind kind = calibration.motion.kind;
+  if (Status unit = check_unit(file, kind, where); !unit) {
+    return std::unexpected(unit.error());
+  }
+  const Result<StageAxis> axis = axis_for_scan(file, stage, kind, where);
+  if (!axis) {
     return std::unexpected(axis.error());
   }
-  if (Status turn = check_turn(file, calibration.motion.kind, where); !turn) {
+  if (Status zero = check_zero(*axis, stage, kind, where); !zero) {
+    return std::unexpected(zero.error());
+  }
+  if (Status turn = check_turn(file, kind, where); !turn) {
     return std::unexpected(turn.error());
   }
   const Result<RigCalibration> seen =
@@ -201,6 +209,31 @@ RowWindow::Give RigScanner::giving(ProfileSink& sink, ScanTally& tally) const {
   };
 }
 
+Status RigScanner::begin(ProfileSink& sink, ScanTally& tally) {
+  const RigCalibration& calibration = triangulator_->calibration();
+  const double pitch = pitch_->value();
+  ScanInfo info;
+  info.cols = triangulator_->samples_per_profile();
+  info.expected_rows = file_.rows;
+  // On a turntable it goes by how far from the axis the clay is: by the grid's own samples.
+  const bool turns_tablet = calibration.motion.kind == MotionKind::kTurntable;
+  info.spacing_mm =
+      turns_tablet ? 0 : std::max(calibration.field_per_px_mm(), calibration.row_spacing_mm(pitch));
+  info.view = calibration.view(pitch, calibration.motion.view_position(file_.start, end_of(file_)));
+  info.timestamp_ns = began_ns_;
+  info.device = device_id_;
+  window_ = std::make_unique<RowWindow>(*triangulator_, extractor_.options(), pitch);
+  if (!sink.begin(info)) {
+    return fail(ErrorKind::kCancelled, kRefused, file_.name);
+  }
+  for (SweptRow& row : std::exchange(waiting_, {})) {
+    if (Status handed = hand_on(std::move(row), sink, tally); !handed) {
+      return handed;
+    }
+  }
+  return {};
+}
+
 Status RigScanner::hand_on(SweptRow row, ProfileSink& sink, ScanTally& tally) {
   return window_->take(std::move(row), giving(sink, tally));
 }
@@ -210,7 +243,7 @@ Status RigScanner::scan(ProfileSink& sink) {
   if (Status homed = home_once(stage_, file_.axis); !homed) {
     return homed;
   }
-  const LaserGuard dark(stage_, static_cast<std::uint32_t>(file_.laser));
+  LaserGuard dark(stage_, static_cast<std::uint32_t>(file_.laser));
   Result<Travel> plan = Travel{};
   if (file_.continuous) {
     plan = plan_sweep();
@@ -222,22 +255,12 @@ Status RigScanner::scan(ProfileSink& sink) {
     return started;
   }
   const StreamGuard stream(camera_);
-  ScanInfo info;
-  info.cols = triangulator_->samples_per_profile();
-  info.expected_rows = file_.rows;
-  // On a turntable it goes by how far from the axis the clay is: by the grid's own samples.
-  const bool turns_tablet = triangulator_->calibration().motion.kind == MotionKind::kTurntable;
-  info.spacing_mm = turns_tablet ? 0 : rig_.spacing_mm;
-  info.view = triangulator_->calibration().view(
-      file_.step, triangulator_->calibration().motion.view_position(file_.start, end_of(file_)));
-  info.timestamp_ns = wall_clock_ns();
-  info.device = device_id_;
   ScanTally tally;
-  window_ = std::make_unique<RowWindow>(*triangulator_, extractor_.options(), file_.step);
-  Status status = sink.begin(info) ? Status{} : fail(ErrorKind::kCancelled, kRefused, file_.name);
-  if (status && file_.continuous) {
-    status = sweep(*plan, sink, tally);
-  }
+  window_.reset();
+  waiting_.clear();
+  began_ns_ = wall_clock_ns();
+  pitch_.emplace(file_.step, plan->speed, triangulator_->calibration().motion.kind != MotionKind::kLinear);
+  Status status = file_.continuous ? sweep(*plan, sink, tally) : begin(sink, tally);
   for (int number = 0; status && !file_.continuous && number < file_.rows; ++number) {
     status =
         stopped_->load() ? fail(ErrorKind::kCancelled, "scan stopped", file_.name) : row(number, sink, tally);
@@ -245,11 +268,19 @@ Status RigScanner::scan(ProfileSink& sink) {
   if (!status) {
     [[maybe_unused]] const Status said = stage_.stop();
   }
+  if (!window_) {  // it ended before anybody knew how far apart its rows come
+    const Status begun = begin(sink, tally);
+    status = status ? begun : status;
+  }
   // Whatever ended the scan, rows that wait for neighbours are kept, unless nobody wants them.
   if (status || status.error().what != kRefused) {
     const Status rest = window_->finish(giving(sink, tally));
     status = status ? rest : status;
   }
+  if (const auto remark = pitch_->remark()) {
+    sink.remark(*remark);
+  }
+  status = dark.off(std::move(status));
   sink.end(tally);
   return status;
 }
@@ -272,7 +303,8 @@ Status RigScanner::stop_view() {
 }
 
 Status RigScanner::light_view(bool lit) {
-  return stage_.set_laser(static_cast<std::uint32_t>(file_.laser), lit ? file_.laser_power : 0);
+  const auto laser = static_cast<std::uint32_t>(file_.laser);
+  return lit ? stage_.set_laser(laser, file_.laser_power) : put_off(stage_, laser);
 }
 
 Status RigScanner::stop() {

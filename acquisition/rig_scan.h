@@ -3,12 +3,16 @@
 #pragma once
 
 #include <atomic>
+#include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "acquisition/rig_parts.h"
 #include "acquisition/rig_source.h"
+#include "acquisition/row_pitch.h"
 #include "acquisition/row_window.h"
 #include "acquisition/triangulate.h"
 #include "core/rig.h"
@@ -33,7 +37,8 @@ class RigScanner : public RigSource {
 
   /// One scan; the stage is homed before the first, where it has to be. Row by row: drives to the row, takes
   /// a frame with the laser off (where the file asks for ambient frames) and one with it on. Continuous: the
-  /// stage moves through, every frame of the camera is a row, and its time says where the stage was. Rows
+  /// stage moves through, every frame of the camera is a row, and its time says where the stage was; the
+  /// sink's begin() waits until it is known how far apart they come. Rows
   /// close enough together correct each other (SweptLight) and come a few rows late. The laser is off
   /// afterwards, whatever happened.
   Status scan(ProfileSink& sink) override;
@@ -54,6 +59,8 @@ class RigScanner : public RigSource {
   Status row(int number, ProfileSink& sink, ScanTally& tally);
   [[nodiscard]] Result<Travel> plan_sweep();
   Status sweep(const Travel& plan, ProfileSink& sink, ScanTally& tally);
+  /// Tells the sink of the scan, whose rows are pitch_ apart, and hands on those that waited for that.
+  Status begin(ProfileSink& sink, ScanTally& tally);
   Status hand_on(SweptRow row, ProfileSink& sink, ScanTally& tally);
   [[nodiscard]] RowWindow::Give giving(ProfileSink& sink, ScanTally& tally) const;
 
@@ -66,7 +73,11 @@ class RigScanner : public RigSource {
   std::string device_id_;
   std::unique_ptr<std::atomic<bool>> stopped_;
   GrayImage dark_;
-  std::unique_ptr<RowWindow> window_;  ///< of the scan that runs
+  // Of the scan that runs.
+  std::int64_t began_ns_ = 0;
+  std::optional<RowPitch> pitch_;
+  std::vector<SweptRow> waiting_;      ///< until the sink has begun
+  std::unique_ptr<RowWindow> window_;  ///< there once the sink has begun
 };
 
 /// Days from an ISO 8601 time in UTC until now; nothing when the text is none, or a time to come: then the

@@ -127,13 +127,23 @@ Status RigScanner::sweep(const Travel& plan, ProfileSink& sink, ScanTally& tally
     }
     tally.profiles_dropped += placed->missed;
     unsure = 0;  // a gap in the numbers: counted
+    pitch_->add(placed->row, seen->timestamp_ns, position);
     SweptRow swept{placed->row, seen->timestamp_ns, position, std::move(seen->stripe)};
-    if (Status handed = hand_on(std::move(swept), sink, tally); !handed) {
-      return handed;
+    if (window_) {
+      if (Status handed = hand_on(std::move(swept), sink, tally); !handed) {
+        return handed;
+      }
+      continue;
+    }
+    waiting_.push_back(std::move(swept));
+    if (pitch_->is_known()) {
+      if (Status begun = begin(sink, tally); !begun) {
+        return begun;
+      }
     }
   }
   // Those whose place is not known are among those that are missing, but where the stage came to rest.
-  tally.profiles_dropped += rows.any() ? std::max(unsure, rows.missed_until(position)) : 0;
+  tally.profiles_dropped += rows.any() ? std::max(unsure, rows.missed_until(position, pitch_->value())) : 0;
   if (!rows.any()) {
     return fail(ErrorKind::kDevice,
                 unsure > 0 ? "nobody knows where the stage was: its answers come too late"

@@ -25,11 +25,12 @@ std::optional<RowCount::Placed> RowCount::place(std::int64_t id, double position
   return Placed{row, static_cast<std::uint64_t>(missed)};
 }
 
-std::uint64_t RowCount::missed_until(double position) const {
+std::uint64_t RowCount::missed_until(double position, std::optional<double> pitch) const {
   if (!first_) {
     return 0;
   }
-  const double steps = std::floor((std::min(position, end_ + step_) - last_) / step_ + 0.5) - 1;
+  const double apart = pitch.value_or(step_);
+  const double steps = std::floor((std::min(position, end_ + apart) - last_) / apart + 0.5) - 1;
   return static_cast<std::uint64_t>(std::max(0.0, steps));
 }
 

@@ -21,8 +21,9 @@ class RowCount {
   /// Of the frame `id`, taken at `position`; nothing when it was taken outside of the scan. Numbers ascend.
   [[nodiscard]] std::optional<Placed> place(std::int64_t id, double position);
   /// Rows of the scan that passed between the last frame that was placed and `position`, where the stage was
-  /// at a later one or came to rest, and that no frame came of.
-  [[nodiscard]] std::uint64_t missed_until(double position) const;
+  /// at a later one or came to rest, and that no frame came of. `pitch` is how far apart they came, where
+  /// that is not the step.
+  [[nodiscard]] std::uint64_t missed_until(double position, std::optional<double> pitch = {}) const;
   /// Whether a frame was placed.
   [[nodiscard]] bool any() const { return first_.has_value(); }
   /// Whether the scan ends within `steps` of `position`: half a step is its last row.

@@ -58,10 +58,14 @@ Status CameraStream::show() {
   return {};
 }
 
-void CameraStream::end() {
-  if (std::exchange(runs_, false)) {
-    [[maybe_unused]] const Status said = device_.stop_frames();
+CameraStream::~CameraStream() {
+  if (const Status ended = end(); !ended && sink_) {
+    sink_(Notice{ended.error().line()});  // a laser that may be lit
   }
+}
+
+Status CameraStream::end() {
+  return std::exchange(runs_, false) ? device_.stop_frames() : Status{};
 }
 
 Status CameraStream::put(const SettingWords& words, const std::string& where) {
@@ -69,7 +73,9 @@ Status CameraStream::put(const SettingWords& words, const std::string& where) {
   if (put || !runs_) {
     return put;
   }
-  end();
+  if (const Status ended = end(); !ended) {
+    return ended;
+  }
   return put_settings(device_, words, where);
 }
 

@@ -52,19 +52,21 @@ class CameraWatch {
   std::thread thread_;
 };
 
-/// A camera's stream while a person looks at it; ends it when it goes.
+/// A camera's stream while a person looks at it; ends it when it goes, and says in a Notice what went wrong
+/// with that.
 class CameraStream {
  public:
   /// Once stopped() is true (if it is given), show() waits for nothing any more.
   CameraStream(Device& device, const EventSink& sink, std::function<bool()> stopped = {})
       : device_(device), sink_(sink), stopped_(std::move(stopped)) {}
-  ~CameraStream() { end(); }
+  ~CameraStream();
   CameraStream(const CameraStream&) = delete;
   CameraStream& operator=(const CameraStream&) = delete;
 
   /// The next frame, if one comes within a tenth of a second, as CameraFrame. Starts the stream where needed.
   Status show();
-  void end();
+  /// kDevice: a laser that may be lit, a camera that is gone.
+  Status end();
   /// Of a rig: with the laser on (unless said) or off, from the next show() on.
   void light(bool on) { wanted_lit_ = on; }
   /// Changes settings. What a camera cannot change while frames run ends them; the next show() starts them

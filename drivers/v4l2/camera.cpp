@@ -98,6 +98,9 @@ Result<std::unique_ptr<Camera>> Camera::open(const std::string& path, const Came
   if (const Status configured = out->configure(); !configured) {
     return std::unexpected(configured.error());
   }
+  if (const Status fixed = end_autofocus(*out->node_); !fixed) {
+    return std::unexpected(fixed.error());
+  }
   return out;
 }
 
@@ -127,7 +130,8 @@ Status Camera::find_again() {
       node_.reset();
       return configured;
     }
-    Status written = write_again(*node_, controls_, set_here_);
+    Status written = end_autofocus(*node_);  // it may have started anew
+    written = written ? write_again(*node_, controls_, set_here_) : written;
     if (!written) {
       node_.reset();
     }

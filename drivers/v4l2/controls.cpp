@@ -222,6 +222,13 @@ Status write_control(const Node& node, const Control& control, const dubsar_valu
   return put(node, control.id, *count, control.key);
 }
 
+Status end_autofocus(const Node& node) {
+  v4l2_control now{V4L2_CID_FOCUS_AUTO, 0};
+  return node.control(VIDIOC_G_CTRL, &now) != 0 || now.value == 0
+             ? Status{}
+             : put(node, V4L2_CID_FOCUS_AUTO, 0, "manual focus");
+}
+
 std::optional<std::uint32_t> left_to_camera(const Node& node, const Control& control,
                                             const dubsar_value& value) {
   const auto* automatic = std::ranges::find(kAutomatics, control.id, &Automatic::id);

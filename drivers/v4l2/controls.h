@@ -43,6 +43,9 @@ struct Control {
 /// Setting exposure or gain ends the camera's own automatic of it first. The value has the control's type.
 /// kUsage for a value that the camera refuses, and for a control that another one puts out of use.
 Status write_control(const Node& node, const Control& control, const dubsar_value& value);
+/// A lens that focuses by itself has another focal length than it was calibrated with: ends that where it is
+/// on. kUsage, kDevice: the camera refuses.
+Status end_autofocus(const Node& node);
 /// The control (of exposure or gain) whose value the camera sets by itself once this one has this value.
 [[nodiscard]] std::optional<std::uint32_t> left_to_camera(const Node& node, const Control& control,
                                                           const dubsar_value& value);

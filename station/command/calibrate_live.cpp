@@ -10,6 +10,7 @@
 
 #include "acquisition/live_calibration.h"
 #include "acquisition/rig_device.h"
+#include "acquisition/rig_parts.h"
 #include "formats/calibration_json.h"
 #include "station/calibration_run.h"
 #include "station/command/calibrate.h"
@@ -44,6 +45,7 @@ LiveCalibrationPlan plan_for(const LiveOptions& options, const RigFile& rig, con
   plan.laser_power = rig.laser_power;
   plan.from = rig.start;
   plan.to = rig.start + rig.step * (rig.rows - 1);
+  plan.speed = rig.speed;
   plan.stops = options.stops;
   if (options.board_exposure_us > 0) {
     plan.board_exposure_us = options.board_exposure_us;
@@ -111,9 +113,13 @@ Result<std::string> take_pictures(const LiveOptions& options, const std::string&
     return fail(ErrorKind::kUsage, "a range camera is calibrated by its maker", options.rig,
                 "scan with it: dubsar scan --device rig:" + options.rig);
   }
+  const LiveCalibrationPlan plan = plan_for(options, parts->file, board, folder);
+  if (const Status unit = plan.set.motion ? check_unit(parts->file, *plan.set.motion, options.rig) : Status{};
+      !unit) {
+    return std::unexpected(unit.error());
+  }
   Result<LiveCalibration> live =
-      LiveCalibration::start(plan_for(options, parts->file, board, folder), std::move(parts->camera),
-                             std::move(parts->stage), context.job);
+      LiveCalibration::start(plan, std::move(parts->camera), std::move(parts->stage), context.job);
   if (!live) {
     return std::unexpected(live.error());
   }

@@ -87,6 +87,30 @@ TEST_F(GigeRig, ScansWithAPartOfThePicture) {
   EXPECT_LT(errors.missed, 0.01);
 }
 
+/// As one that exposes for longer than its rate allows: where the rows lie is true, how far apart was a lie.
+TEST_F(GigeRig, ACameraThatIsSlowerThanItTellsGivesAGridThatSaysSo) {
+  plan_.rows = 60;
+  plan_.frames_apart = 3;
+  plan_.jitter = 0.1;
+  test::GigeScanner scanner(plan_, *stage);
+  ASSERT_EQ(scanner.refusal(), "");
+  Result<Device> device = open(scanner);
+  ASSERT_TRUE(device.has_value()) << device.error().line();
+  struct : test::CollectGrid {
+    void remark(const std::string& text) override { said = text; }
+    std::string said;
+  } sink;
+  const Result<ScanOutcome> done = device->scan(sink);
+  ASSERT_TRUE(done.has_value()) << done.error().line();
+  EXPECT_LE(sink.tally.profiles_dropped, 2U);
+  EXPECT_NE(sink.said.find("the camera is too slow for the stage"), std::string::npos) << sink.said;
+  const RangeGrid grid = sink.grid();
+  EXPECT_NEAR(grid.rows, plan_.rows / 3, 2);
+  EXPECT_NEAR(grid.spacing_mm, 3 * plan_.step, 0.3 * plan_.step);
+  EXPECT_NEAR(grid.view.motion_per_row_mm.norm(), 3 * plan_.step, 0.3 * plan_.step);
+  EXPECT_LT(test::depth_errors(grid, scanner.tablet_from_grid(), scene_.query).rms_um, 6);
+}
+
 TEST_F(GigeRig, SurvivesLostPackets) {
   plan_.loss = 0.02;
   plan_.rows = 12;

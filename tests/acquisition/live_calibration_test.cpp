@@ -224,6 +224,41 @@ TEST_F(Live, FailuresLeaveTheLaserOff) {
   EXPECT_FALSE(start().has_value());
 }
 
+TEST_F(Live, ALaserThatCannotBePutOffIsTold) {
+  Result<LiveCalibration> live = start();
+  ASSERT_TRUE(live.has_value());
+  held_ = poses(1)[0];
+  bench_.burns_on = true;
+  const auto taken = live->take_pose(JobContext{});
+  ASSERT_FALSE(taken.has_value());
+  EXPECT_NE(taken.error().line().find("the laser may still be on"), std::string::npos)
+      << taken.error().line();
+}
+
+/// The operator has just laid the board there, and sits beside it.
+TEST_F(Live, TheStageGoesAsFastAsTheRigSays) {
+  plan_.speed = 1.5;
+  Result<LiveCalibration> slide = start();
+  ASSERT_TRUE(slide.has_value()) << slide.error().line();
+  carried_ = true;
+  ASSERT_TRUE(slide->take_stops(JobContext{}).has_value());
+  EXPECT_EQ(bench_.speed, 1.5);
+  bench_.truth.motion.kind = MotionKind::kGalvanometer;
+  bench_.speed = 0;
+  plan_.set.motion = MotionKind::kGalvanometer;
+  plan_.folder = folder_.path() / "mirror";
+  plan_.from = -0.01;
+  plan_.to = 0.01;
+  const Result<LiveCalibration> without_zero = start();
+  ASSERT_FALSE(without_zero.has_value());
+  EXPECT_NE(without_zero.error().what.find("no reference switch"), std::string::npos);
+  bench_.can_home = true;
+  Result<LiveCalibration> mirror = start();
+  ASSERT_TRUE(mirror.has_value()) << mirror.error().line();
+  ASSERT_TRUE(mirror->take_pose(JobContext{}).has_value());
+  EXPECT_EQ(bench_.speed, 1.5);
+}
+
 TEST_F(Live, ACancelledOneEndsTheMoveAndLightsNothing) {
   Result<LiveCalibration> live = start();
   ASSERT_TRUE(live.has_value());

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "acquisition/rig_parts.h"
@@ -30,8 +31,9 @@ void ask(PositionTrack& track, double late_from, double late_to, double late_ms)
   track.close();
 }
 
-/// All profiles of the stage's way through a scan of 121 rows from -60 mm on; z is the time, in seconds.
-ScanTally scan(PositionTrack& track, test::CollectGrid& sink) {
+/// All profiles of the stage's way through a scan of 121 rows from -60 mm on, from the camera's `first` on; z
+/// is the time, in seconds.
+ScanTally scan(PositionTrack& track, test::CollectGrid& sink, int first = 0) {
   RigMotion motion;
   motion.direction = {0, 1, 0};
   PlacedProfiles placed(sink, track, {motion, -60, kStep, 121, "test"});
@@ -40,7 +42,7 @@ ScanTally scan(PositionTrack& track, test::CollectGrid& sink) {
   info.view.motion_per_row_mm = {0, 1, 0};  // made up of the rows' numbers
   EXPECT_TRUE(placed.begin(info));
   bool more = true;
-  for (int row = 0; row < 590 && more; ++row) {
+  for (int row = first; row < 590 && more; ++row) {
     const std::vector<float> x{0};
     const std::vector<float> z{0.005F * static_cast<float>(row)};
     Profile profile;
@@ -84,6 +86,7 @@ TEST(PlacedProfiles, SpacingIsOfTheStepOnASlideAndOfTheClayOnATurntable) {
     info.cols = 1;
     info.spacing_mm = 0.05;
     EXPECT_TRUE(placed.begin(info));
+    placed.flush();
     EXPECT_EQ(sink.spacing_mm, kind == MotionKind::kLinear ? 0.2 : 0.0);
   }
 }
@@ -99,6 +102,7 @@ TEST(PlacedProfiles, AScanOnATurntableIsSeenFromTheMiddleOfItsTurn) {
   info.cols = 1;
   info.view.camera_mm = Eigen::Vector3d(0, 0, 200);
   EXPECT_TRUE(placed.begin(info));
+  placed.flush();
   const RigidTransform there = motion.zero_from_camera(1.0);
   EXPECT_LT((sink.grid().view.camera_mm.value() - there * Eigen::Vector3d(0, 0, 200)).norm(), 1e-9);
 }
@@ -131,6 +135,70 @@ TEST(PlacedProfiles, RowsWhosePlaceIsNotKnownAreLostAndCounted) {
     // What came keeps its place among the lost.
     EXPECT_LE(grid.rows, 123) << middle;
   }
+}
+
+/// Where it is asked for a row each 5 ms and takes one each 15, as one does that exposes for too long.
+TEST(PlacedProfiles, TheHeaderSaysHowFarApartRowsReallyCome) {
+  for (const int every : {1, 3}) {
+    PositionTrack track;
+    ask(track, 0, 0, 0);
+    struct : test::CollectGrid {
+      bool begin(const ScanInfo& info) override {
+        said = info;
+        return test::CollectGrid::begin(info);
+      }
+      ScanInfo said;
+    } sink;
+    RigMotion motion;
+    motion.direction = {0, 1, 0};
+    PlacedProfiles placed(sink, track, {motion, -60, kStep, 121, "test", kSpeed});
+    ScanInfo info;
+    info.cols = 1;
+    EXPECT_TRUE(placed.begin(info));
+    const std::vector<float> zero{0};
+    Profile profile;
+    profile.x = profile.y = profile.z = zero;
+    bool more = true;
+    for (int row = 0; more; ++row) {
+      profile.row = row;
+      profile.timestamp_ns = row * every * 5 * kMs + kMs;
+      more = placed.profile(profile);
+    }
+    placed.flush();
+    EXPECT_TRUE(placed.complete());
+    EXPECT_EQ(placed.tally().profiles_dropped, 0U);
+    EXPECT_NEAR(sink.said.spacing_mm, every * kStep, 1e-3 * kStep);
+    EXPECT_NEAR(sink.said.view.motion_per_row_mm.y(), every * kStep, 1e-3 * kStep);
+    EXPECT_NEAR(sink.grid().rows, 121 / every, 1);
+    const std::optional<std::string> remark = placed.pitch_remark();
+    ASSERT_EQ(remark.has_value(), every > 1);
+    if (remark) {
+      EXPECT_NE(remark->find("too slow for the stage: rows came 0.075 mm apart, and the step is 0.025 mm"),
+                std::string::npos)
+          << *remark;
+    }
+  }
+}
+
+/// A camera that takes its time to start, while the stage moves already.
+TEST(PlacedProfiles, RowsMissedAtTheStartAreCountedAndTheOthersKeepTheirPlace) {
+  for (const double late_to : {0.0, -59.0}) {  // the stage's first answers may be late besides
+    PositionTrack track;
+    ask(track, -60, late_to, late_to < 0 ? 40 : 1);
+    test::CollectGrid sink;
+    const ScanTally tally = scan(track, sink, 240);  // at -59 mm, forty rows behind the first
+    const RangeGrid grid = sink.grid();
+    EXPECT_GE(tally.profiles_dropped, 39U);
+    EXPECT_NEAR(static_cast<double>(tally.profiles_sent + tally.profiles_dropped), 121, 1.5);
+    EXPECT_NEAR(grid.rows, 121, 1);
+    const auto row = static_cast<double>(std::ranges::find(grid.valid, 1) - grid.valid.begin());
+    EXPECT_GE(row, 39);
+    EXPECT_NEAR(static_cast<double>(grid.y[static_cast<std::size_t>(row)]), -60 + kStep * row, 2 * kStep);
+  }
+  PositionTrack track;
+  ask(track, 0, 0, 0);
+  test::CollectGrid sink;
+  EXPECT_EQ(scan(track, sink, 150).profiles_dropped, 0U) << "it began before the scan did";
 }
 
 /// Rows until it has enough, or `most`; each of the time that `time_of` tells.

@@ -37,8 +37,11 @@ struct RigBench {
   int cut = 0;               ///< rows that the camera leaves away at the lower edge
   int gone_after = 1 << 30;  ///< frames until the camera is unplugged
   bool stuck = false;
-  bool says_it_moves = false;     ///< for ever
-  bool mute = false;              ///< tells of no axis
+  bool says_it_moves = false;  ///< for ever
+  bool mute = false;           ///< tells of no axis
+  bool can_home = false;
+  double speed = 0;               ///< that the last move was asked for
+  bool burns_on = false;          ///< the controller obeys no more once its laser is lit
   std::atomic<bool> far = false;  ///< a move ends by nothing but a stop
   int stale = 0;                  ///< frames of long ago that the camera still holds
   std::mutex line;                ///< of laser and asked: a stop comes from another thread
@@ -220,6 +223,7 @@ inline const dubsar_driver& stage_driver() {
       axis.maximum = bench.limit;
       axis.speed_maximum = 5;
       axis.resolution = 0.001;
+      axis.flags = bench.can_home ? DUBSAR_AXIS_CAN_HOME : 0;
       return callback(user, &axis) == 0 ? DUBSAR_OK : DUBSAR_CANCELLED;
     };
     out.home = [](dubsar_device*, dubsar_error*) -> std::int32_t { return DUBSAR_OK; };
@@ -232,6 +236,7 @@ inline const dubsar_driver& stage_driver() {
         return DUBSAR_CANCELLED;
       }
       bench.position = bench.stuck ? bench.position : move->position;
+      bench.speed = move->speed;
       return DUBSAR_OK;
     };
     out.read_motion = [](dubsar_device* device, dubsar_motion* to, dubsar_error*) -> std::int32_t {
@@ -247,14 +252,23 @@ inline const dubsar_driver& stage_driver() {
       plugin::lend(to, motion);
       return DUBSAR_OK;
     };
-    out.set_laser = [](dubsar_device* device, std::uint32_t, double power, dubsar_error*) -> std::int32_t {
+    out.set_laser = [](dubsar_device* device, std::uint32_t, double power,
+                       dubsar_error* error) -> std::int32_t {
       const std::scoped_lock lock(bench_of(device).line);
+      if (bench_of(device).burns_on && bench_of(device).laser > 0 && power == 0) {
+        return plugin::report(error, DUBSAR_DEVICE, "the controller does not answer", "bench",
+                              "see to its cable");
+      }
       bench_of(device).laser = power;
       bench_of(device).asked += power > 0 ? 'L' : 'D';
       return DUBSAR_OK;
     };
-    out.stop = [](dubsar_device* device, dubsar_error*) -> std::int32_t {
+    out.stop = [](dubsar_device* device, dubsar_error* error) -> std::int32_t {
       const std::scoped_lock lock(bench_of(device).line);
+      if (bench_of(device).burns_on && bench_of(device).laser > 0) {
+        return plugin::report(error, DUBSAR_DEVICE, "the controller does not answer", "bench",
+                              "see to its cable");
+      }
       bench_of(device).laser = 0;
       bench_of(device).asked += 'S';
       bench_of(device).far = false;

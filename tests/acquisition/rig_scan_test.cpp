@@ -162,6 +162,7 @@ RigCalibration small_turntable() {
 
 TEST_F(RigScan, OnATurntableTheSpacingIsThatOfTheClay) {
   bench.truth = small_turntable();
+  file.turns = true;
   file.start = -0.1;
   file.step = 0.02;
   Result<RigScanner> made = make();
@@ -176,6 +177,7 @@ TEST_F(RigScan, OnATurntableTheSpacingIsThatOfTheClay) {
 
 TEST_F(RigScan, OnATurntableAScanIsSeenFromTheMiddleOfItsTurn) {
   bench.truth = small_turntable();
+  file.turns = true;
   file.start = 1.0;
   file.step = 0.01;
   Result<RigScanner> made = make();
@@ -251,6 +253,69 @@ TEST_F(RigScan, RefusesPartsThatDoNotFit) {
       RigScanner::make(file, bench.truth, test::stage_of(bench), test::camera_of(bench), "rig.toml");
   ASSERT_FALSE(swapped.has_value());
   EXPECT_NE(swapped.error().what.find("no camera"), std::string::npos);
+}
+
+/// A scan copied from the file of another rig: 40 degrees would be 0.7 mm, 3 mm would be 172 degrees.
+TEST_F(RigScan, RefusesAScanInTheUnitOfAnotherKindOfStage) {
+  file.turns = true;
+  const Result<RigScanner> slide = make();
+  ASSERT_FALSE(slide.has_value());
+  EXPECT_EQ(slide.error().kind, ErrorKind::kBadInput);
+  EXPECT_NE(slide.error().line().find("said in degrees"), std::string::npos) << slide.error().line();
+  file.turns = false;
+  for (const MotionKind kind : {MotionKind::kTurntable, MotionKind::kGalvanometer}) {
+    sim::FrameRigOptions size;
+    size.motion = kind;
+    bench.truth = sim::frame_rig(size);
+    bench.can_home = true;
+    EXPECT_NE(refusal().find("said in millimetres"), std::string::npos) << refusal();
+  }
+  // And with a range camera, before anything is opened.
+  file.motion = RigMotion{};
+  file.speed = 5;
+  EXPECT_TRUE(RangeRig::check(file, "rig.toml"));
+  file.turns = true;
+  EXPECT_EQ(RangeRig::check(file, "rig.toml").error().kind, ErrorKind::kBadInput);
+}
+
+TEST_F(RigScan, RefusesAMirrorThatHasNoZeroOfItsOwn) {
+  sim::FrameRigOptions size;
+  size.motion = MotionKind::kGalvanometer;
+  bench.truth = sim::frame_rig(size);
+  file.turns = true;
+  file.step = 0.0001;
+  file.start = -0.0005;
+  EXPECT_NE(refusal().find("no reference switch"), std::string::npos) << refusal();
+  bench.can_home = true;
+  const Result<RigScanner> made = make();
+  EXPECT_TRUE(made.has_value()) << made.error().line();
+}
+
+/// The rows are all there, and the operator reaches for the tablet.
+TEST_F(RigScan, ALaserThatCannotBePutOffIsToldAndTheRowsAreKept) {
+  file.ambient = false;
+  bench.burns_on = true;
+  Result<RigScanner> made = make();
+  ASSERT_TRUE(made.has_value());
+  Collect sink;
+  const Status burns = made->scan(sink);
+  ASSERT_FALSE(burns.has_value());
+  EXPECT_EQ(burns.error().kind, ErrorKind::kDevice);
+  EXPECT_NE(burns.error().line().find("the laser may still be on"), std::string::npos);
+  EXPECT_NE(burns.error().mend.find("pull its plug"), std::string::npos);
+  EXPECT_EQ(sink.builder->grid().rows, file.rows);
+  EXPECT_EQ(sink.tally.profiles_sent, static_cast<std::uint64_t>(file.rows));
+  // Of a scan that failed both are told; of one that was stopped this one.
+  bench.gone_after = static_cast<int>(bench.frames) + 4;
+  Collect broken;
+  const Status both = made->scan(broken);
+  ASSERT_FALSE(both.has_value());
+  EXPECT_NE(both.error().what.find("the camera is gone; the laser may still be on"), std::string::npos)
+      << both.error().line();
+  bench.gone_after = 1 << 30;
+  Collect few;
+  few.most_rows = 2;
+  EXPECT_EQ(made->scan(few).error().kind, ErrorKind::kDevice);
 }
 
 TEST_F(RigScan, AFailureLeavesTheRowsAndTheLaserOff) {
@@ -389,6 +454,18 @@ TEST_F(RigScan, ARangeCameraThatFailsEndsTheMotionBeforeTheLaserIsPutOff) {
   Collect sink;
   EXPECT_EQ(made->scan(sink).error().kind, ErrorKind::kDevice);
   EXPECT_EQ(bench.asked, "LSD");
+}
+
+TEST_F(RigScan, ALaserOfARangeCameraThatCannotBePutOffIsTold) {
+  file.motion = RigMotion{};
+  file.speed = 5;
+  bench.burns_on = true;
+  Result<RangeRig> made = RangeRig::make(file, gone_range_camera(), test::stage_of(bench), "rig.toml");
+  ASSERT_TRUE(made.has_value()) << made.error().line();
+  Collect sink;
+  const Status failed = made->scan(sink);
+  EXPECT_NE(failed.error().what.find("the camera is gone; the laser may still be on"), std::string::npos)
+      << failed.error().line();
 }
 
 }  // namespace

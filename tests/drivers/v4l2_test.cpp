@@ -284,6 +284,24 @@ TEST_F(V4l2, UnpluggedInMidStreamAndPluggedInAgain) {
   EXPECT_THAT(other.error().line(), HasSubstr("another camera is there now: Another"));
 }
 
+/// A lens that focuses by itself has another focal length in each scan.
+TEST_F(V4l2, AutofocusEndsWhenTheCameraIsOpenedAndWhenItIsPluggedInAgain) {
+  ASSERT_NO_FATAL_FAILURE(plug_in({"GREY:160x120@100"}));
+  if (IsSkipped()) {
+    return;
+  }
+  Device device = open().value();
+  const auto automatic = [&] { return std::get<bool>(device.get("focus_automatic_continuous").value()); };
+  EXPECT_FALSE(automatic());
+  ASSERT_TRUE(device.start_frames());
+  ASSERT_EQ(peer_->tell("unplug"), "ok");
+  while (device.next_frame(60s)) {
+  }
+  ASSERT_EQ(peer_->tell("plug"), "ok");
+  ASSERT_TRUE(device.start_frames());
+  EXPECT_FALSE(automatic());
+}
+
 /// In the order of their numbers the focus would stand before what lets it be set.
 TEST_F(V4l2, PluggedInAgainItsAutomaticsAreAsTheyWereSetLast) {
   ASSERT_NO_FATAL_FAILURE(plug_in({"GREY:160x120@100"}));
@@ -305,6 +323,7 @@ TEST_F(V4l2, PluggedInAgainItsAutomaticsAreAsTheyWereSetLast) {
   };
   const auto focus = [&] { return std::get<std::int64_t>(device.get("focus_absolute").value()); };
   const auto automatic = [&] { return std::get<bool>(device.get("focus_automatic_continuous").value()); };
+  ASSERT_TRUE(device.set("focus_automatic_continuous", true));
   const Status early = device.set("focus_absolute", std::int64_t{120});
   ASSERT_FALSE(early);
   EXPECT_EQ(early.error().kind, ErrorKind::kUsage);

@@ -103,6 +103,24 @@ TEST_F(CameraStreamTest, ARigIsSeenWithItsLaserOnOrOff) {
   EXPECT_EQ(bench_.laser, 0);
 }
 
+TEST_F(CameraStreamTest, ALaserThatCannotBePutOffWhenNobodyLooksAnyMoreIsTold) {
+  Device device = rig();
+  std::vector<std::string> notices;
+  const EventSink sink = [&](const Event& event) {
+    if (const auto* notice = std::get_if<Notice>(&event)) {
+      notices.push_back(notice->text);
+    }
+  };
+  {
+    CameraStream stream(device, sink);
+    ASSERT_TRUE(stream.show());
+    bench_.burns_on = true;
+  }
+  ASSERT_EQ(notices.size(), 1U);
+  EXPECT_NE(notices[0].find("the laser may still be on"), std::string::npos) << notices[0];
+  EXPECT_NE(notices[0].find("pull its plug"), std::string::npos) << notices[0];
+}
+
 TEST_F(CameraStreamTest, OfACameraAloneNobodyKnowsTheLight) {
   Device device = camera();
   CameraStream stream(device, sink_);

@@ -51,8 +51,8 @@ GigeScanner::GigeScanner(const GigeScannerPlan& plan, PeerProcess& stage) {
   tablet_from_grid_ = plan.tablet_from_scanner;
   tablet_from_grid_.translation_mm -=
       tablet_from_grid_.rotation * (truth.scanner_from_camera().rotation * truth.motion.direction) * middle;
-  for (int k = -2; k < plan.rows + 2; ++k) {
-    positions_.push_back(plan.start + plan.step * (k + plan.jitter * std::sin(2.4 * k)));
+  for (int k = -2; k < plan.rows / plan.frames_apart + 2; ++k) {
+    positions_.push_back(plan.start + plan.step * plan.frames_apart * (k + plan.jitter * std::sin(2.4 * k)));
   }
   const sim::FrameRenderer renderer(truth, plan.optics);
   const auto render = [&](double position, bool laser, std::size_t number) {

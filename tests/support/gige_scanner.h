@@ -28,7 +28,9 @@ struct GigeScannerPlan {
   double start = -60;  ///< of the stage, mm; GRBL's axis goes from -200 to 0
   double step = 0.05;  ///< mm
   int rows = 32;
-  double rate_hz = 50;  ///< of the camera
+  double rate_hz = 50;  ///< of the camera, as it tells
+  /// From frame to frame, in steps: other than 1 of a camera that does not keep the rate that it tells.
+  double frames_apart = 1;
   /// How far the frames lie from even spacing, in steps: only the clock tells where each was taken.
   double jitter = 0.2;
   double loss = 0;                           ///< share of the packets
