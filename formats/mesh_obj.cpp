@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
+#include <cmath>
+#include <limits>
 #include <optional>
 #include <vector>
 
@@ -103,11 +105,12 @@ class ObjReader {
         return;
       }
     }
-    constexpr std::array<float, 3> kWhite{1, 1, 1};
-    colours_.resize(mesh_.positions.size() - 1, kWhite);
+    constexpr float kNotANumber = std::numeric_limits<float>::quiet_NaN();
+    constexpr std::array<float, 3> kNoColour{kNotANumber, kNotANumber, kNotANumber};
+    colours_.resize(mesh_.positions.size() - 1, kNoColour);
     colours_.push_back({static_cast<float>(rgb[0]), static_cast<float>(rgb[1]), static_cast<float>(rgb[2])});
   }
-  /// From 0 to 1, or to 255 where any runs so far.
+  /// From 0 to 1, or to 255 where any runs so far; white where a line has none.
   void lay_colours() {
     if (colours_.empty()) {
       return;
@@ -116,7 +119,7 @@ class ObjReader {
         std::ranges::any_of(colours_, [](const auto& rgb) { return std::ranges::any_of(rgb, runs_to_255); });
     mesh_.colours.resize(mesh_.positions.size(), {255, 255, 255});
     for (std::size_t v = 0; v < colours_.size(); ++v) {
-      for (std::size_t k = 0; k < 3; ++k) {
+      for (std::size_t k = 0; k < 3 && !std::isnan(colours_[v][0]); ++k) {
         mesh_.colours[v][k] = colour_byte(static_cast<double>(colours_[v][k]) / (bytes ? 255.0 : 1.0));
       }
     }

@@ -35,7 +35,7 @@ struct Columns {
         reliability(vertex.scalar("reliability")),
         sigma(vertex.scalar("sigma")),
         scans(vertex.scalar("scans")),
-        flags(vertex.scalar("flags")) {}
+        flags(marks_property(vertex)) {}
   [[nodiscard]] static bool has(const std::array<int, 3>& three) {
     return std::all_of(three.begin(), three.end(), [](int p) { return p >= 0; });
   }

@@ -42,15 +42,22 @@ std::vector<std::uint8_t> known_properties(const PlyElement& vertex) {
       std::ranges::for_each(three, mark);
     }
   };
-  for (const char* name : {"x", "y", "z", "reliability", "sigma", "scans", "flags"}) {
+  for (const char* name : {"x", "y", "z", "reliability", "sigma", "scans"}) {
     mark(vertex.scalar(name));
   }
+  mark(marks_property(vertex));
   mark_all({vertex.scalar("nx"), vertex.scalar("ny"), vertex.scalar("nz")});
   mark_all(PlyColours::properties_of(vertex));
   return known;
 }
 
 }  // namespace
+
+int marks_property(const PlyElement& vertex) {
+  const int flags = vertex.scalar("flags");
+  const bool ours = flags >= 0 && vertex.properties[static_cast<std::size_t>(flags)].type == PlyType::kUint8;
+  return ours ? flags : -1;
+}
 
 bool has_texture_places(const PlyElement& vertex) {
   return std::ranges::any_of(vertex.properties, [&](const PlyProperty& property) {

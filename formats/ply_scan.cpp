@@ -74,6 +74,7 @@ struct VertexColumns {
   int x, y, z, valid, intensity, confidence;
   std::array<int, 3> normal;
   double intensity_scale = 1;
+  float confidence_largest = 1;  ///< what its type reaches to, 1 of floating-point numbers
 
   explicit VertexColumns(const PlyElement& vertex)
       : x(vertex.scalar("x")),
@@ -89,11 +90,25 @@ struct VertexColumns {
     } else if (intensity >= 0 && type_of(intensity) == PlyType::kUint16) {
       intensity_scale = 1.0 / 65535.0;
     }
+    if (confidence >= 0 && type_of(confidence) == PlyType::kUint8) {
+      confidence_largest = 255;
+    } else if (confidence >= 0 && type_of(confidence) == PlyType::kUint16) {
+      confidence_largest = 65535;
+    }
   }
   [[nodiscard]] static bool has(const std::array<int, 3>& three) {
     return three[0] >= 0 && three[1] >= 0 && three[2] >= 0;
   }
 };
+
+/// To 0 to 1, from whole numbers up to `largest` where any of them is above 1 (others are 0 and 1
+/// themselves); what lies above becomes 1.
+void scale_confidence(float largest, std::vector<float>& confidence) {
+  const bool whole = std::ranges::any_of(confidence, [](float c) { return c > 1; });
+  for (float& c : confidence) {
+    c = std::min(whole ? c / largest : c, 1.0F);
+  }
+}
 
 Result<ScanSamples> read_vertices(PlyBody& body, const PlyElement& vertex, double mm,
                                   const std::string& name) {
@@ -126,7 +141,7 @@ Result<ScanSamples> read_vertices(PlyBody& body, const PlyElement& vertex, doubl
     }
     if (columns.confidence >= 0) {
       const double confidence = row.value(columns.confidence);
-      samples.confidence.push_back(confidence > 0 ? static_cast<float>(std::min(confidence, 1.0)) : 0.0F);
+      samples.confidence.push_back(confidence > 0 ? static_cast<float>(confidence) : 0.0F);
     }
     colours.put(static_cast<std::size_t>(index), [&](int property) { return row.value(property); });
     for (std::size_t k = 0; k < 3 && VertexColumns::has(columns.normal); ++k) {
@@ -137,6 +152,7 @@ Result<ScanSamples> read_vertices(PlyBody& body, const PlyElement& vertex, doubl
   if (!done) {
     return std::unexpected(done.error());
   }
+  scale_confidence(columns.confidence_largest, samples.confidence);
   samples.rgb.reserve(colours.any() ? 3 * count : 0);
   for (const std::array<std::uint8_t, 3>& rgb : colours.take()) {
     samples.rgb.insert(samples.rgb.end(), rgb.begin(), rgb.end());

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <optional>
 
+#include "formats/colour_values.h"
 #include "formats/comma_use.h"
 #include "formats/scan_samples.h"
 #include "formats/text_scanner.h"
@@ -60,16 +61,18 @@ Line read_line(std::string_view text, bool decimal_commas) {
 }
 
 /// What the three columns from `first` are, judged by all of them.
-enum class Triple { kNone, kColour, kNormal };
+enum class Triple { kNone, kColour, kShares, kNormal };
 
 Triple judge(const std::vector<float>& triples) {
   bool colour = true;
+  bool share = true;  // of the brightest, as some programs write colours
   bool normal = true;
   bool above_one = false;
   for (std::size_t i = 0; i + 2 < triples.size(); i += 3) {
     float square = 0;
     for (std::size_t k = i; k < i + 3; ++k) {
       colour = colour && triples[k] >= 0 && triples[k] <= 255 && triples[k] == std::floor(triples[k]);
+      share = share && triples[k] >= 0 && triples[k] <= 1;
       above_one = above_one || triples[k] > 1;
       square += triples[k] * triples[k];
     }
@@ -78,7 +81,7 @@ Triple judge(const std::vector<float>& triples) {
   if (colour && (above_one || !normal)) {
     return Triple::kColour;
   }
-  return normal ? Triple::kNormal : Triple::kNone;
+  return normal ? Triple::kNormal : share ? Triple::kShares : Triple::kNone;
 }
 
 }  // namespace
@@ -152,11 +155,11 @@ Result<ScanData> read_point_text(std::string_view bytes, const std::string& name
   }
   if (!triples.empty()) {
     const Triple kind = judge(triples);
-    if (kind == Triple::kColour) {
+    if (kind == Triple::kColour || kind == Triple::kShares) {
       samples.rgb.reserve(triples.size());
       for (const float value : triples) {
-        samples.rgb.push_back(static_cast<std::uint8_t>(value));
-      };
+        samples.rgb.push_back(colour_byte(kind == Triple::kShares ? value : value / 255.0));
+      }
     } else if (kind == Triple::kNormal) {
       samples.normals = std::move(triples);
     }

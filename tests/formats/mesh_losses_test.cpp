@@ -122,6 +122,17 @@ TEST(MeshLosses, WhatIsPassedOverIsNamedWhateverIsWritten) {
   EXPECT_LT(mesh_losses(tetrahedron(), "b.ply", "keep a.ply", many)->line().size(), 600U);
 }
 
+TEST(MeshLosses, FlagsOfAnotherProgramAreNoMarks) {
+  const std::string ply =
+      "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
+      "property int flags\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n"
+      "0 0 0 256\n1 0 0 256\n0 1 0 256\n3 0 1 2\n";
+  const auto mesh = read_mesh_bytes(ply, "a.ply");
+  ASSERT_TRUE(mesh) << line_of(mesh);
+  EXPECT_TRUE(mesh->flags.empty());
+  EXPECT_EQ(passed_over(ply, "a.ply"), std::vector<std::string>{"vertex flags"});
+}
+
 TEST(MeshLosses, PlyHasEachOfThemByItself) {
   const Mesh all = measured();
   for (int only = 0; only < 4; ++only) {

@@ -55,6 +55,14 @@ TEST(MeshObj, PolygonsNeedNotBeConvex) {
   }
 }
 
+TEST(MeshObj, AVertexWithoutAColourIsWhiteWhereverItStands) {
+  const auto mesh =
+      read_mesh_bytes("v 0 0 0\nv 1 0 0 200 100 50\nv 1 1 0\nv 0 1 0 10 20 30\nf 1 2 3\nf 1 3 4\n", "a.obj");
+  ASSERT_TRUE(mesh) << line_of(mesh);
+  using Colours = std::vector<std::array<std::uint8_t, 3>>;
+  EXPECT_EQ(mesh->colours, (Colours{{255, 255, 255}, {200, 100, 50}, {255, 255, 255}, {10, 20, 30}}));
+}
+
 TEST(MeshHostile, Obj) {
   const auto line = [](const std::string& text) { return line_of(read_mesh_bytes(text, "a.obj")); };
   EXPECT_THAT(line("v 0 0 zero\n"), HasSubstr("a.obj: line 1: 'zero' is not a coordinate"));

@@ -230,6 +230,19 @@ TEST(PlyScan, ReadsIntensityColourAndConfidence) {
   EXPECT_EQ(grid.rgb[5], 6);
 }
 
+TEST(PlyScan, ReadsConfidenceOfWholeNumbersByTheirType) {
+  const auto confidence = [](const std::string& type, const std::string& best, const std::string& half) {
+    Parts parts;
+    parts.vertex += "property " + type + " confidence\n";
+    parts.body = "0 0 0 " + best + "\n1 0 0 " + half + "\n0 1 0 0\n1 1 0 0\n1 0\n1 1\n0\n1 2\n0\n1 3\n";
+    const RangeGrid grid = grid_of(parts.text());
+    return std::pair(grid.confidence[0], grid.confidence[1]);
+  };
+  EXPECT_EQ(confidence("uchar", "255", "51"), std::pair(1.0F, 0.2F));
+  EXPECT_EQ(confidence("ushort", "65535", "13107"), std::pair(1.0F, 0.2F));
+  EXPECT_EQ(confidence("uchar", "1", "0"), std::pair(1.0F, 0.0F));  // a mask
+}
+
 TEST(PlyScan, ReadsColoursAsMeshesHaveThem) {
   const auto colours = [](const std::string& type, const std::string& first, const std::string& last) {
     Parts parts;

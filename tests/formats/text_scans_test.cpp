@@ -339,5 +339,18 @@ TEST(TextScanner, NumbersThatNoDoubleHoldsAreZeroOrInfinityWhateverTheHostsLocal
   all();
 }
 
+TEST(PointText, ColoursRunTo255OrToOne) {
+  for (const std::string text : {"0 0 0 1 0.2 0\n1 0 0 0.6 0 0\n0 1 0 0 0.4 0.8\n",
+                                 "0 0 0 255 51 0\n1 0 0 153 0 0\n0 1 0 0 102 204\n"}) {
+    const auto data = read_scan_bytes(text, "a.xyz");
+    ASSERT_TRUE(data) << line_of(data);
+    EXPECT_EQ(std::get<PointCloud>(data->front()).rgb,
+              (std::vector<std::uint8_t>{255, 51, 0, 153, 0, 0, 0, 102, 204}));
+  }
+  const auto normals = read_scan_bytes("0 0 0 0 0 1\n1 0 0 0 0.6 0.8\n0 1 0 1 0 0\n", "a.xyz");
+  ASSERT_TRUE(normals) << line_of(normals);
+  EXPECT_TRUE(std::get<PointCloud>(normals->front()).rgb.empty());
+}
+
 }  // namespace
 }  // namespace dubsar
