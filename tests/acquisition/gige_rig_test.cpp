@@ -105,9 +105,10 @@ TEST_F(GigeRig, ACameraThatIsSlowerThanItTellsGivesAGridThatSaysSo) {
   EXPECT_LE(sink.tally.profiles_dropped, 2U);
   EXPECT_NE(sink.said.find("the camera is too slow for the stage"), std::string::npos) << sink.said;
   const RangeGrid grid = sink.grid();
-  EXPECT_NEAR(grid.rows, plan_.rows / 3, 2);
-  EXPECT_NEAR(grid.spacing_mm, 3 * plan_.step, 0.3 * plan_.step);
-  EXPECT_NEAR(grid.view.motion_per_row_mm.norm(), 3 * plan_.step, 0.3 * plan_.step);
+  EXPECT_GT(grid.spacing_mm, 1.2 * plan_.step);
+  EXPECT_NEAR(grid.rows * grid.spacing_mm, plan_.rows * plan_.step, 0.1 * plan_.rows * plan_.step)
+      << "the same way in fewer rows";
+  EXPECT_NEAR(grid.view.motion_per_row_mm.norm(), grid.spacing_mm, 0.02 * plan_.step);
   EXPECT_LT(test::depth_errors(grid, scanner.tablet_from_grid(), scene_.query).rms_um, 6);
 }
 
