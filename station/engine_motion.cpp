@@ -72,6 +72,7 @@ void Engine::Impl::stop_motion_after_trouble(const JobContext& job) {
   const Status still = source->stop();
   const bool told = [&] {
     const std::scoped_lock lock(mutex);
+    // A second answer may be in other words; what is to be done by hand is the same.
     return still || (device_error && device_error->mend == still.error().mend);
   }();
   if (!told) {

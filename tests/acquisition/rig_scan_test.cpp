@@ -10,62 +10,15 @@
 
 #include "acquisition/camera_region.h"
 #include "acquisition/exposure.h"
-#include "acquisition/grid_builder.h"
 #include "acquisition/range_rig.h"
 #include "acquisition/rig_device.h"
-#include "tests/acquisition/rig_bench.h"
-#include "tests/sim/scenes.h"
+#include "tests/acquisition/rig_scan_fixture.h"
 
 namespace dubsar {
 namespace {
 
-class Collect : public ProfileSink {
- public:
-  bool begin(const ScanInfo& info) override {
-    builder.emplace(info);
-    return true;
-  }
-  bool profile(const Profile& profile) override {
-    builder->append(profile);
-    return builder->grid().rows < most_rows;
-  }
-  void end(const ScanTally& ended) override { tally = ended; }
-  std::optional<GridBuilder> builder;
-  ScanTally tally;
-  int most_rows = 1 << 30;
-};
-
-class RigScan : public testing::Test {
- protected:
-  RigScan() {
-    test::set_up_small(bench, scene.scene);
-    file.name = "bench rig";
-    file.camera = "bench_camera:";
-    file.stage = "bench_stage:";
-    file.calibration = "calibration.json";
-    file.start = -0.5;
-    file.step = 0.1;
-    file.rows = 11;
-  }
-  Result<RigScanner> make() {
-    return RigScanner::make(file, bench.truth, test::camera_of(bench), test::stage_of(bench), "rig.toml");
-  }
-  std::string refusal() {
-    const Result<RigScanner> made = make();
-    EXPECT_FALSE(made.has_value());
-    return made ? std::string() : made.error().line();
-  }
-
-  /// What the field has less to either side of the lens's axis than half of the picture.
-  [[nodiscard]] double off_middle_mm() const {
-    const CameraModel& camera = bench.truth.camera;
-    return std::abs(2 * camera.cx_px - (camera.width - 1)) * 6.25 / camera.width;
-  }
-
-  sim::TestScene scene{sim::plane(20, 0.5F, 0.5F)};
-  test::RigBench bench;
-  RigFile file;
-};
+using test::Collect;
+using RigScan = test::RigScanFixture;
 
 TEST_F(RigScan, ScansAPlaneThroughTheDriverInterface) {
   Result<RigScanner> made = make();
@@ -291,57 +244,6 @@ TEST_F(RigScan, RefusesAMirrorThatHasNoZeroOfItsOwn) {
   EXPECT_TRUE(made.has_value()) << made.error().line();
 }
 
-/// The rows are all there, and the operator reaches for the tablet.
-TEST_F(RigScan, ALaserThatCannotBePutOffIsToldAndTheRowsAreKept) {
-  file.ambient = false;
-  bench.burns_on = true;
-  Result<RigScanner> made = make();
-  ASSERT_TRUE(made.has_value());
-  Collect sink;
-  const Status burns = made->scan(sink);
-  ASSERT_FALSE(burns.has_value());
-  EXPECT_EQ(burns.error().kind, ErrorKind::kDevice);
-  EXPECT_NE(burns.error().line().find("the laser may still be on"), std::string::npos);
-  EXPECT_NE(burns.error().mend.find("pull its plug"), std::string::npos);
-  EXPECT_EQ(sink.builder->grid().rows, file.rows);
-  EXPECT_EQ(sink.tally.profiles_sent, static_cast<std::uint64_t>(file.rows));
-  // Of a scan that failed both are told; of one that was stopped this one.
-  bench.gone_after = static_cast<int>(bench.frames) + 4;
-  Collect broken;
-  const Status both = made->scan(broken);
-  ASSERT_FALSE(both.has_value());
-  EXPECT_NE(both.error().what.find("the camera is gone; the laser may still be on"), std::string::npos)
-      << both.error().line();
-  bench.gone_after = 1 << 30;
-  Collect few;
-  few.most_rows = 2;
-  EXPECT_EQ(made->scan(few).error().kind, ErrorKind::kDevice);
-}
-
-TEST_F(RigScan, AFailureLeavesTheRowsAndTheLaserOff) {
-  Result<RigScanner> made = make();
-  ASSERT_TRUE(made.has_value());
-  bench.gone_after = 9;
-  Collect sink;
-  const Status unplugged = made->scan(sink);
-  ASSERT_FALSE(unplugged.has_value());
-  EXPECT_EQ(unplugged.error().kind, ErrorKind::kDevice);
-  EXPECT_EQ(sink.builder->grid().rows, 4);
-  EXPECT_EQ(sink.tally.profiles_sent, 4U);
-  EXPECT_EQ(bench.laser, 0);
-  // Plugged in again, it goes on.
-  bench.gone_after = 1 << 30;
-  Collect again;
-  EXPECT_TRUE(made->scan(again).has_value());
-  // A stage that stands still.
-  bench.stuck = true;
-  Collect stuck;
-  const Status blocked = made->scan(stuck);
-  ASSERT_FALSE(blocked.has_value());
-  EXPECT_NE(blocked.error().what.find("not where it was sent: at 0.5 mm, not -0.5 mm"), std::string::npos);
-  EXPECT_EQ(bench.laser, 0);
-}
-
 /// A camera's pool holds half a second of frames, of which all grow old while the stage moves.
 TEST_F(RigScan, FramesFromBeforeTheMoveAreLetGoHoweverManyThereAre) {
   file.rows = 2;
@@ -386,29 +288,6 @@ TEST_F(RigScan, RowsCloseTogetherWaitForEachOtherAndNoneIsKeptBack) {
   EXPECT_EQ(few.builder->grid().rows, 2);
 }
 
-TEST_F(RigScan, AnEmergencyStopIsTheStagesAndKeepsTheRows) {
-  Result<RigScanner> made = make();
-  ASSERT_TRUE(made.has_value());
-  Device device = device_of(std::move(*made), "rig:a.toml");
-  struct Halts : Collect {
-    explicit Halts(Device& one) : device(one) {}
-    bool profile(const Profile& profile) override {
-      if (profile.row == 3) {
-        EXPECT_TRUE(device.emergency_stop());
-      }
-      return Collect::profile(profile);
-    }
-    Device& device;
-  } sink(device);
-  const Result<ScanOutcome> halted = device.scan(sink);
-  ASSERT_FALSE(halted.has_value());
-  EXPECT_EQ(halted.error().kind, ErrorKind::kCancelled);
-  EXPECT_GE(sink.builder->grid().rows, 4);
-  EXPECT_LT(sink.builder->grid().rows, file.rows);
-  EXPECT_NE(bench.asked.find('E'), std::string::npos);
-  EXPECT_EQ(bench.laser, 0);
-}
-
 TEST_F(RigScan, CancelledBySinkAndRefusesAnotherRegion) {
   Result<RigScanner> made = make();
   ASSERT_TRUE(made.has_value());
@@ -423,49 +302,6 @@ TEST_F(RigScan, CancelledBySinkAndRefusesAnotherRegion) {
   const Status region = made->scan(cut);
   ASSERT_FALSE(region.has_value());
   EXPECT_NE(region.error().what.find("calibrated with"), std::string::npos);
-}
-
-/// A range camera that is unplugged as soon as it is asked for profiles.
-Device gone_range_camera() {
-  static const dubsar_driver driver = [] {
-    dubsar_driver out = plugin::empty_driver();
-    out.close = [](dubsar_device*) {};
-    out.capabilities = [](dubsar_device*, dubsar_capabilities* to, dubsar_error*) -> std::int32_t {
-      dubsar_capabilities c{};
-      c.struct_size = sizeof c;
-      plugin::lend(to, c);
-      return DUBSAR_OK;
-    };
-    out.scan = [](dubsar_device*, const dubsar_sink*, dubsar_error* error) -> std::int32_t {
-      return plugin::report(error, DUBSAR_DEVICE, "the camera is gone", "bench", "plug it in");
-    };
-    return out;
-  }();
-  static int any = 0;
-  return {&driver, reinterpret_cast<dubsar_device*>(&any), "bench_range:"};
-}
-
-/// GRBL puts a laser off in its turn, behind the move that still runs: for so long it would burn on.
-TEST_F(RigScan, ARangeCameraThatFailsEndsTheMotionBeforeTheLaserIsPutOff) {
-  file.motion = RigMotion{};
-  file.speed = 5;
-  Result<RangeRig> made = RangeRig::make(file, gone_range_camera(), test::stage_of(bench), "rig.toml");
-  ASSERT_TRUE(made.has_value()) << made.error().line();
-  Collect sink;
-  EXPECT_EQ(made->scan(sink).error().kind, ErrorKind::kDevice);
-  EXPECT_EQ(bench.asked, "LSD");
-}
-
-TEST_F(RigScan, ALaserOfARangeCameraThatCannotBePutOffIsTold) {
-  file.motion = RigMotion{};
-  file.speed = 5;
-  bench.burns_on = true;
-  Result<RangeRig> made = RangeRig::make(file, gone_range_camera(), test::stage_of(bench), "rig.toml");
-  ASSERT_TRUE(made.has_value()) << made.error().line();
-  Collect sink;
-  const Status failed = made->scan(sink);
-  EXPECT_NE(failed.error().what.find("the camera is gone; the laser may still be on"), std::string::npos)
-      << failed.error().line();
 }
 
 }  // namespace
