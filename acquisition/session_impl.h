@@ -6,6 +6,8 @@
 #include <map>
 #include <mutex>
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "acquisition/session_files.h"
 #include "acquisition/session_lock.h"
@@ -25,7 +27,13 @@ struct SessionStore::Impl {
   session::Losses lost;           ///< what is, and is not noted in db; for writing: unlisted grids alone
   SessionOpening opening;
   std::vector<int> damaged_grids;  ///< ids, as seen while opening
-  mutable std::mutex mutex;        ///< of db and damaged_grids
+  /// A grid that was stored and not listed, for the disk refused its row.
+  struct Refused {
+    int id = 0;
+    std::string event;  ///< of its storing, JSON
+  };
+  std::optional<Refused> refused;
+  mutable std::mutex mutex;  ///< of db, damaged_grids and refused
 
   ~Impl();
   /// kUsage when the session was opened for reading only; kStorage when it does not lie there any more.
@@ -33,16 +41,24 @@ struct SessionStore::Impl {
   /// Under the mutex.
   [[nodiscard]] Result<int> next_id();
   /// The checks of opening that follow once db stands: rows, grids without a row, rows without their grid.
-  [[nodiscard]] Status reconcile();
+  /// kCancelled when the job was stopped: grids that were taken in by then stay so.
+  [[nodiscard]] Status reconcile(const JobContext* job);
   /// What the record says of scans that have no row.
   struct Unlisted {
     session::Losses standing;
+    bool lacks = false;  ///< of scans that it does not name, too; else a kill left those unlisted
     std::map<int, session::DropState> drops;
   };
   [[nodiscard]] Result<Unlisted> unlisted();
   /// Takes a whole grid in that has no row.
   [[nodiscard]] Status adopt(int id, const session::FileSum& sum, const RangeGrid& grid,
                              const Unlisted& record);
+  /// Lists a grid and notes `event`, in one transaction. Under the mutex. Where it fails `in_the_balance`
+  /// says whether the log may hold it all the same.
+  [[nodiscard]] Status list_grid(int id, const session::FileSum& sum, const RangeGrid& grid,
+                                 const std::string& event, bool* in_the_balance);
+  /// Lists the grid that waits for it. Under the mutex.
+  [[nodiscard]] Status list_refused();
 };
 
 namespace session {

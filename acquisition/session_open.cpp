@@ -83,11 +83,14 @@ Result<bool> tell_lost_commits(const fs::path& folder, SessionOpening& opening, 
 
 /// Grids that prove that commits are missing: every scan's row is committed before the next grid is stored,
 /// and whoever opens a session for writing takes in the one grid that a kill may have left without a row. So
-/// of two whole ones without a row one had it. `grids` lay there before the tables were read: another program
-/// may be storing scans. 0 where they prove nothing.
-std::int64_t unlisted_proof(const fs::path& folder, const std::vector<int>& grids, SqlDatabase& db) {
+/// of two whole ones without a row one had it. A row that the record names as lost proves nothing: whoever
+/// rebuilt the tables may have been stopped before its grid was taken in again. `grids` lay there before the
+/// tables were read: another program may be storing scans. 0 where they prove nothing.
+std::int64_t unlisted_proof(const fs::path& folder, const std::vector<int>& grids, SqlDatabase& db,
+                            const Losses& standing) {
   const auto is_unlisted = [&](int id) {
-    return !has_row(db, row_name("scans", std::to_string(id))) && verify_grid_file(folder / grid_name(id));
+    const std::string row = row_name("scans", std::to_string(id));
+    return !standing.rows.contains(row) && !has_row(db, row) && verify_grid_file(folder / grid_name(id));
   };
   const std::int64_t unlisted = std::ranges::count_if(grids, is_unlisted);
   return unlisted > 1 ? unlisted : 0;
@@ -95,13 +98,13 @@ std::int64_t unlisted_proof(const fs::path& folder, const std::vector<int>& grid
 
 /// Says so, once; the record says it from then on.
 Status note_missing_log(const fs::path& folder, SqlDatabase& db, SessionOpening& opening, Losses& lost) {
-  lost.unlisted = unlisted_proof(folder, grid_ids(folder), db);
-  if (lost.unlisted == 0) {
-    return {};
-  }
   const Result<Losses> standing = standing_losses(db);
-  if (!standing || standing->more) {
-    return standing ? Status() : std::unexpected(standing.error());
+  if (!standing) {
+    return std::unexpected(standing.error());
+  }
+  lost.unlisted = unlisted_proof(folder, grid_ids(folder), db, *standing);
+  if (lost.unlisted == 0 || standing->more) {
+    return {};
   }
   opening.damage.push_back(missing_log_error(lost.unlisted, folder));
   return note_losses(db, {{}, true});
@@ -232,7 +235,11 @@ Result<SqlDatabase> open_for_reading(const fs::path& folder, SessionOpening& ope
     fault = copied.error();
   }
   if (!fault) {
-    lost.unlisted = lost.more ? 0 : unlisted_proof(folder, grids, *memory);
+    const Result<Losses> standing = standing_losses(*memory);
+    if (!standing) {
+      return std::unexpected(standing.error());
+    }
+    lost.unlisted = lost.more ? 0 : unlisted_proof(folder, grids, *memory, *standing);
     if (lost.unlisted > 0) {
       lost.more = true;
       opening.damage.push_back(missing_log_error(lost.unlisted, folder));

@@ -23,8 +23,6 @@ using session::in_transaction;
 
 namespace {
 
-constexpr const char* kScanStored = "scan stored";
-
 /// What devices remarked on scans, by id: it stands in the record of their storing, so that sessions of
 /// earlier versions, which have none, need no other tables.
 Result<std::map<int, std::string>> stored_remarks(SqlDatabase& db) {
@@ -34,7 +32,7 @@ Result<std::map<int, std::string>> stored_remarks(SqlDatabase& db) {
       db, "SELECT kind, json FROM events WHERE sum IS dubsar_sum(number,time_ns,kind,json) ORDER BY number",
       [&](const SqlStatement& row) -> Status {
         const std::string kind = row.text(0);
-        if (kind != kScanStored && kind != session::kAdopted && kind != session::kBroughtBack) {
+        if (kind != session::kScanStored && kind != session::kAdopted && kind != session::kBroughtBack) {
           return {};
         }
         const nlohmann::json detail = nlohmann::json::parse(row.text(1), nullptr, false);
@@ -47,7 +45,7 @@ Result<std::map<int, std::string>> stored_remarks(SqlDatabase& db) {
         const auto id = detail.is_object() ? detail.find("id") : detail.end();
         const auto remark = detail.is_object() ? detail.find("remark") : detail.end();
         if (remark != detail.end() && remark->is_string() && id != detail.end() && id->is_number_integer()) {
-          (kind == kScanStored ? out : unknown)[id->get<int>()] = remark->get<std::string>();
+          (kind == session::kScanStored ? out : unknown)[id->get<int>()] = remark->get<std::string>();
         }
         return {};
       });
@@ -56,22 +54,6 @@ Result<std::map<int, std::string>> stored_remarks(SqlDatabase& db) {
     said += (said.empty() ? "" : "; ") + remark;
   }
   return read ? Result<std::map<int, std::string>>(std::move(out)) : std::unexpected(read.error());
-}
-
-Status check_arrays(const RangeGrid& grid) {
-  const auto n =
-      static_cast<std::size_t>(std::max(0, grid.rows)) * static_cast<std::size_t>(std::max(0, grid.cols));
-  const auto fits = [n](std::size_t have, std::size_t per, bool optional) {
-    return have == n * per || (optional && have == 0);
-  };
-  if (grid.rows < 0 || grid.cols < 0 || !fits(grid.x.size(), 1, false) || !fits(grid.y.size(), 1, false) ||
-      !fits(grid.z.size(), 1, false) || !fits(grid.valid.size(), 1, false) ||
-      !fits(grid.intensity.size(), 1, true) || !fits(grid.confidence.size(), 1, true) ||
-      !fits(grid.rgb.size(), 3, true)) {
-    return fail(ErrorKind::kInternal, "a grid whose arrays do not fit its rows and columns was to be stored",
-                grid.source);
-  }
-  return {};
 }
 
 }  // namespace
@@ -121,17 +103,19 @@ bool SessionStore::is_session(const fs::path& folder) {
          !session::grid_ids(folder).empty();
 }
 
-Result<SessionStore> SessionStore::open_or_create(const fs::path& folder, OnDamage on_damage) {
-  return open_for_writing(folder, on_damage, nullptr);
+Result<SessionStore> SessionStore::open_or_create(const fs::path& folder, OnDamage on_damage,
+                                                  const JobContext* job) {
+  return open_for_writing(folder, on_damage, nullptr, job);
 }
 
 Result<SessionStore> SessionStore::open_with_copy(const fs::path& folder, const fs::path& copy) {
   const Status there = check_is_session(folder);
-  return there ? open_for_writing(folder, OnDamage::kRebuild, &copy) : std::unexpected(there.error());
+  return there ? open_for_writing(folder, OnDamage::kRebuild, &copy, nullptr)
+               : std::unexpected(there.error());
 }
 
 Result<SessionStore> SessionStore::open_for_writing(const fs::path& folder, OnDamage on_damage,
-                                                    const fs::path* copy) {
+                                                    const fs::path* copy, const JobContext* job) {
   if (Status made = session::make_folders(folder); !made) {
     return std::unexpected(made.error());
   }
@@ -166,18 +150,19 @@ Result<SessionStore> SessionStore::open_for_writing(const fs::path& folder, OnDa
       return std::unexpected(back.error());
     }
   }
-  if (Status reconciled = impl->reconcile(); !reconciled) {
+  if (Status reconciled = impl->reconcile(job); !reconciled) {
     return std::unexpected(reconciled.error());
   }
   return SessionStore(std::move(impl));
 }
 
-Result<SessionStore> SessionStore::open(const fs::path& folder, Access access, OnDamage on_damage) {
+Result<SessionStore> SessionStore::open(const fs::path& folder, Access access, OnDamage on_damage,
+                                        const JobContext* job) {
   if (Status there = check_is_session(folder); !there) {
     return std::unexpected(there.error());
   }
   if (access == Access::kReadWrite) {
-    return open_or_create(folder, on_damage);
+    return open_or_create(folder, on_damage, job);
   }
   auto impl = std::make_unique<Impl>();
   impl->folder = folder;
@@ -187,7 +172,7 @@ Result<SessionStore> SessionStore::open(const fs::path& folder, Access access, O
     return std::unexpected(db.error());
   }
   impl->db = std::move(*db);
-  if (Status reconciled = impl->reconcile(); !reconciled) {
+  if (Status reconciled = impl->reconcile(job); !reconciled) {
     return std::unexpected(reconciled.error());
   }
   return SessionStore(std::move(impl));
@@ -209,52 +194,6 @@ double SessionStore::disk_free_gib() const {
 Result<int> SessionStore::next_id() const {
   const std::scoped_lock hold(impl_->mutex);
   return impl_->next_id();
-}
-
-Result<int> SessionStore::add_grid(const RangeGrid& grid, std::string_view remark) {
-  if (Status writable = impl_->writable(); !writable) {
-    return std::unexpected(writable.error());
-  }
-  if (Status fits = check_arrays(grid); !fits) {
-    return std::unexpected(fits.error());
-  }
-  const std::vector<std::byte> bytes = encode_grid(grid);
-  const std::string_view view(reinterpret_cast<const char*>(bytes.data()), bytes.size());
-  const FileSum sum{static_cast<std::int64_t>(bytes.size()), session::hash_of(view)};
-
-  const std::scoped_lock hold(impl_->mutex);
-  const Result<int> next = impl_->next_id();
-  if (!next) {
-    return next;
-  }
-  const int id = *next;
-  const fs::path path = impl_->folder / session::grid_name(id);
-  if (Status written = write_file_atomically(path, std::span(bytes)); !written) {
-    return std::unexpected(written.error());
-  }
-  bool in_the_balance = false;
-  const Status listed = in_transaction(*impl_->db, [&]() -> Status {
-    if (Status put = session::insert_scan(*impl_->db, id, sum, grid); !put) {
-      return put;
-    }
-    nlohmann::json detail{{"id", id}, {"source", grid.source}};
-    if (!remark.empty()) {
-      detail["remark"] = std::string(remark);
-    }
-    Status noted = session::insert_event(
-        *impl_->db, kScanStored, detail.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
-    in_the_balance = noted.has_value();
-    return noted;
-  });
-  if (!listed) {
-    // It was never reported as stored. But a commit whose sync failed may stand in the log all the same, and
-    // its row would then lack its grid: that one stays, and is taken in when the session is opened again.
-    if (std::error_code ignored; !in_the_balance) {
-      fs::remove(path, ignored);
-    }
-    return std::unexpected(listed.error());
-  }
-  return id;
 }
 
 Result<RangeGrid> SessionStore::load_grid(int id) const {

@@ -91,13 +91,21 @@ class SessionStore {
 
   /// Opens the session in the folder for writing, or makes one: the folder is then new, empty or what is left
   /// of a session. A folder with other things in it is refused.
+  ///
+  /// Opening reads every grid for its checksum: of gigabytes, for minutes. It tells the job how far that is
+  /// ("checking the session") and ends soon after it was cancelled (kCancelled), the session as it was; but
+  /// where opening for writing has found tables to rebuild it goes on to its end, for no later opening would
+  /// tell of that.
   [[nodiscard]] static Result<SessionStore> open_or_create(const std::filesystem::path& folder,
-                                                           OnDamage on_damage = OnDamage::kRebuild);
+                                                           OnDamage on_damage = OnDamage::kRebuild,
+                                                           const JobContext* job = nullptr);
   /// Opens a session that must exist. A damaged database is rebuilt from its readable rows, its last backup
-  /// and the grids: for writing, with the bad file kept aside; for reading, in memory.
+  /// and the grids: for writing, with the bad file kept aside; for reading, in memory. The job is heeded as
+  /// by open_or_create().
   [[nodiscard]] static Result<SessionStore> open(const std::filesystem::path& folder,
                                                  Access access = Access::kReadWrite,
-                                                 OnDamage on_damage = OnDamage::kRebuild);
+                                                 OnDamage on_damage = OnDamage::kRebuild,
+                                                 const JobContext* job = nullptr);
   /// Opens a session that must exist for writing, and takes what it has lost of its records, now or before,
   /// from a copy of it. That is one only where both have an event that is the same, or, where no event is
   /// left, a grid that is, and no grid that is not; where a session was gone on with after its loss, what was
@@ -120,7 +128,7 @@ class SessionStore {
   [[nodiscard]] double disk_free_gib() const;
 
   /// Stores a grid, and what its device remarks on it, and returns its id (0, 1, …, never used twice) once
-  /// both are durable.
+  /// both are durable. A scan that the disk refused before, and whose grid it has, comes into the list first.
   [[nodiscard]] Result<int> add_grid(const RangeGrid& grid, std::string_view remark = {});
   /// The id that add_grid() will give to the next grid.
   [[nodiscard]] Result<int> next_id() const;
@@ -184,7 +192,8 @@ class SessionStore {
   struct Impl;
   [[nodiscard]] static Result<SessionStore> open_for_writing(const std::filesystem::path& folder,
                                                              OnDamage on_damage,
-                                                             const std::filesystem::path* copy);
+                                                             const std::filesystem::path* copy,
+                                                             const JobContext* job);
   explicit SessionStore(std::unique_ptr<Impl> impl);
   std::unique_ptr<Impl> impl_;
 };

@@ -71,6 +71,7 @@ std::int64_t salvage_rows(SqlDatabase& from, SqlDatabase& to, bool results_too);
 [[nodiscard]] Status insert_scan(SqlDatabase& db, int id, const FileSum& sum, const RangeGrid& grid);
 [[nodiscard]] Status insert_event(SqlDatabase& db, std::string_view kind, std::string_view json);
 
+inline constexpr const char* kScanStored = "scan stored";
 inline constexpr const char* kScanDropped = "scan dropped";
 inline constexpr const char* kScanRestored = "scan restored";
 /// Marks a scan in its row, and there alone.

@@ -181,24 +181,23 @@ void check_records(SqlDatabase& db, const fs::path& folder, VerifyReport& report
 }  // namespace
 
 Result<SessionStore::Impl::Unlisted> SessionStore::Impl::unlisted() {
-  // Of a scan whose row was lost the record still tells whether it was taken out, as far as it goes. Where
-  // nothing was rebuilt, and no log is missing, it is one that a kill left unlisted.
-  const bool lacks = rebuilt || lost.unlisted > 0;
-  Result<session::Losses> standing = lacks ? session::standing_losses(*db) : session::Losses();
+  // Of a scan whose row was lost the record still tells whether it was taken out, as far as it goes.
+  Result<session::Losses> standing = session::standing_losses(*db);
   Result<std::map<int, session::DropState>> drops = session::dropped_by_record(*db);
   if (!standing || !drops) {
     return std::unexpected(standing ? drops.error() : standing.error());
   }
   standing->rows.merge(session::Losses(lost).rows);
   standing->more = standing->more || lost.more;
-  return Unlisted{std::move(*standing), std::move(*drops)};
+  return Unlisted{std::move(*standing), rebuilt || lost.unlisted > 0 || lost.any(), std::move(*drops)};
 }
 
 Status SessionStore::Impl::adopt(int id, const FileSum& sum, const RangeGrid& grid, const Unlisted& record) {
   const std::set<std::string>& lost_rows = record.standing.rows;
   const bool was_listed = lost_rows.contains(session::row_name("scans", std::to_string(id)));
   const auto event = lost_rows.lower_bound("events ");
-  const bool unknown = record.standing.more || (event != lost_rows.end() && event->starts_with("events "));
+  const bool may_be_out = record.standing.more || (event != lost_rows.end() && event->starts_with("events "));
+  const bool unknown = (record.lacks || was_listed) && may_be_out;
   const auto known = record.drops.find(id);
   const bool dropped = known != record.drops.end() && known->second.dropped;
   nlohmann::ordered_json detail{{"id", id}};
@@ -225,13 +224,27 @@ Status SessionStore::Impl::adopt(int id, const FileSum& sum, const RangeGrid& gr
   return {};
 }
 
-Status SessionStore::Impl::reconcile() {
+Status SessionStore::Impl::reconcile(const JobContext* job) {
   const Result<std::vector<Recorded>> listed = recorded(*db, kScanFiles);
   if (!listed) {
     return std::unexpected(listed.error());
   }
-  for (const Recorded& one : *listed) {
-    if (std::optional<Error> fault = fault_of_file(folder, one.name, one.sum, nullptr)) {
+  // What was rebuilt for writing is whole from now on: no later opening would tell of it.
+  const bool must_end = access == Access::kReadWrite && (rebuilt || !opening.damage.empty());
+  const auto is_stopped = [&] { return !must_end && job != nullptr && job->cancelled(); };
+  const auto stopped = [&] {
+    return fail(ErrorKind::kCancelled, "stopped while the session was opened", folder.string());
+  };
+  for (std::size_t i = 0; i < listed->size(); ++i) {
+    const Recorded& one = (*listed)[i];
+    if (job != nullptr) {
+      job->progress("checking the session", static_cast<double>(i) / static_cast<double>(listed->size()));
+    }
+    std::optional<Error> fault = fault_of_file(folder, one.name, one.sum, must_end ? nullptr : job);
+    if (is_stopped()) {  // of a grid that was not read to its end nothing is known
+      return stopped();
+    }
+    if (fault) {
       damaged_grids.push_back(one.id);
       opening.damage.push_back(std::move(*fault));
     }
@@ -241,6 +254,9 @@ Status SessionStore::Impl::reconcile() {
   for (const int id : session::grid_ids(folder)) {
     if (std::ranges::find(*listed, id, &Recorded::id) != listed->end()) {
       continue;
+    }
+    if (is_stopped()) {
+      return stopped();
     }
     const std::string name = session::grid_name(id);
     const Result<std::string> bytes = read_whole_file(folder / name);

@@ -6,6 +6,7 @@
 
 #include "archive/rights.h"
 #include "core/units.h"
+#include "core/wedge_length.h"
 #include "formats/json_text.h"
 
 namespace dubsar {
@@ -37,7 +38,7 @@ std::string wedge_in_words(const Wedge& w) {
   return fmt::format(
       "Wedge {}{}: {:.2f} mm deep, directional edge {:.2f} mm long{}{}, confidence {:.2f}{}", w.id, where,
       w.depth_mm, w.edge_lengths_mm[directional],
-      w.beyond_mesh[directional] ? " (the mesh ends before it: not measured)" : "", turn, w.confidence,
+      length_is_guess(w, directional) ? " (the mesh ends before it: not measured)" : "", turn, w.confidence,
       w.by_hand == ByHand::kNo
           ? std::string()
           : fmt::format("; corrected by hand: {}", kByHandNames[static_cast<std::size_t>(w.by_hand)]));

@@ -12,6 +12,7 @@
 #include "archive/html.h"
 #include "core/tablet_sides.h"
 #include "core/units.h"
+#include "core/wedge_length.h"
 #include "formats/atomic_file.h"
 #include "formats/make_folder.h"
 
@@ -45,13 +46,14 @@ std::string metadata(const Wedge& w) {
       R"({"id":%d,"line":%d,"order":%d,"confidence":%.3f,"depth_mm":%.3f,"length_mm":%.3f,"turn_deg":%.1f,"volume_mm3":%.4f%s%s})",
       w.id, w.place.line, w.place.order, w.confidence, w.depth_mm, w.edge_lengths_mm[directional],
       deg_from_rad(w.place.turn_rad), w.volume_mm3,
-      w.beyond_mesh[directional] ? R"(,"length_beyond_mesh":true)" : "",
+      length_is_guess(w, directional) ? R"(,"length_beyond_mesh":true)" : "",
       w.by_hand == ByHand::kNo ? std::string() : fmt::sprintf(R"(,"by_hand":"%s")", name_of(w.by_hand)));
 }
 
-/// Where the mesh ends before the edge does the length is a guess, and said to be one.
+/// Where it is measured to beyond the end of the mesh it is a guess, and said to be one.
 std::string length_mm(const Wedge& w, std::size_t k) {
-  return fmt::sprintf("%.2f%s", w.edge_lengths_mm[k], w.beyond_mesh[k] ? " (the mesh ends before it)" : "");
+  return fmt::sprintf("%.2f%s", w.edge_lengths_mm[k],
+                      length_is_guess(w, k) ? " (the mesh ends before it)" : "");
 }
 
 std::string numbers(const Wedge& w) {

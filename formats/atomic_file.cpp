@@ -14,6 +14,7 @@
 #include <utility>
 
 #include "formats/refusal.h"
+#include "formats/stoppable_read.h"
 
 namespace dubsar {
 
@@ -185,8 +186,12 @@ std::unexpected<Error> read_error(const std::filesystem::path& path, int error) 
                    error == EACCES ? "make it readable" : "check the name");
 }
 
+/// Between two of them it is asked whether to go on: a slow disk takes a second for one.
+constexpr std::size_t kReadBlockBytes = std::size_t{16} << 20U;
+
 /// Reads up to `limit` bytes; a larger file is an error when the whole is asked for.
-Result<std::string> read_up_to(const std::filesystem::path& path, std::uint64_t limit, bool whole) {
+Result<std::string> read_up_to(const std::filesystem::path& path, std::uint64_t limit, bool whole,
+                               const JobContext* job) {
   // What is no file is refused below: opening a pipe would wait for somebody to write into it.
   Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
   if (file.get() < 0) {
@@ -208,26 +213,30 @@ Result<std::string> read_up_to(const std::filesystem::path& path, std::uint64_t 
   }
   std::string bytes;
   int error = 0;
-  bytes.resize_and_overwrite(static_cast<std::size_t>(std::min(size, limit)),
-                             [&](char* into, std::size_t count) {
-                               std::size_t have = 0;
-                               while (have < count) {
-                                 const ssize_t got = ::read(file.get(), into + have, count - have);
-                                 if (got < 0 && errno == EINTR) {
-                                   continue;
-                                 }
-                                 if (got < 0) {
-                                   error = errno;
-                                 }
-                                 if (got <= 0) {
-                                   break;
-                                 }
-                                 have += static_cast<std::size_t>(got);
-                               }
-                               return have;
-                             });
+  bytes.resize_and_overwrite(
+      static_cast<std::size_t>(std::min(size, limit)), [&](char* into, std::size_t count) {
+        std::size_t have = 0;
+        while (have < count && (job == nullptr || !job->cancelled())) {
+          const std::size_t most = job == nullptr ? count : kReadBlockBytes;
+          const ssize_t got = ::read(file.get(), into + have, std::min(count - have, most));
+          if (got < 0 && errno == EINTR) {
+            continue;
+          }
+          if (got < 0) {
+            error = errno;
+          }
+          if (got <= 0) {
+            break;
+          }
+          have += static_cast<std::size_t>(got);
+        }
+        return have;
+      });
   if (error != 0) {
     return read_error(path, error);
+  }
+  if (job != nullptr && job->cancelled()) {
+    return fail(ErrorKind::kCancelled, "reading was stopped", path.string());
   }
   return bytes;
 }
@@ -235,7 +244,11 @@ Result<std::string> read_up_to(const std::filesystem::path& path, std::uint64_t 
 }  // namespace
 
 Result<std::string> read_whole_file(const std::filesystem::path& path, std::uint64_t limit_bytes) {
-  return read_up_to(path, limit_bytes, true);
+  return read_up_to(path, limit_bytes, true, nullptr);
+}
+
+Result<std::string> read_whole_file_unless_stopped(const std::filesystem::path& path, const JobContext* job) {
+  return read_up_to(path, kMaxFileBytes, true, job);
 }
 
 Result<std::ifstream> open_stored_file(const std::filesystem::path& path) {
@@ -251,7 +264,7 @@ Result<std::ifstream> open_stored_file(const std::filesystem::path& path) {
 }
 
 Result<std::string> read_file_head(const std::filesystem::path& path, std::size_t count) {
-  return read_up_to(path, count, false);
+  return read_up_to(path, count, false, nullptr);
 }
 
 }  // namespace dubsar

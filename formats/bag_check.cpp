@@ -8,7 +8,7 @@
 #include <set>
 
 #include "formats/atomic_file.h"
-#include "formats/bag_text.h"
+#include "formats/bag_doubt.h"
 #include "formats/digest.h"
 #include "formats/files_below.h"
 
@@ -21,13 +21,10 @@ namespace {
 constexpr const char* kDeclaration = "bagit.txt";
 constexpr const char* kMend = "get the bag again from its source";
 constexpr const char* kMendExtra = "see what it is, and take it out of data/";
-
-struct Manifest {
-  std::string name;
-  std::string algorithm;
-  Digest digest;
-  std::vector<BagManifestLine> lines;
-};
+constexpr const char* kMendLine =
+    "get this list again from its source, or from a copy (dubsar verify --repair --from COPY)";
+constexpr const char* kNoneLists = "no manifest lists it";
+constexpr const char* kNotAllList = "not every manifest lists it";
 
 bool is_payload(const std::string& name) {
   return name.starts_with("data/");
@@ -52,8 +49,8 @@ class Check {
     if (!is_hidden("data") && !fs::is_directory(folder_ / "data", ignored)) {
       say("data", "missing: a bag has its payload there");
     }
-    const std::vector<Manifest> payload = manifests("manifest-");
-    const std::vector<Manifest> tags = manifests("tagmanifest-");
+    const std::vector<BagManifest> payload = manifests("manifest-");
+    const std::vector<BagManifest> tags = manifests("tagmanifest-");
     const bool lists = std::ranges::any_of(files_, [](const std::string& name) {
       return digest_named(algorithm_of(name, "manifest-")).has_value();
     });
@@ -61,7 +58,7 @@ class Check {
       say("manifest-sha512.txt",
           "missing: without a manifest of SHA-2, SHA-1 or MD5 nothing can be checked here");
     }
-    for (const Manifest& manifest : payload) {
+    for (const BagManifest& manifest : payload) {
       report_.algorithms.push_back(manifest.algorithm);
     }
     check_listing(payload, tags);
@@ -145,8 +142,8 @@ class Check {
     return std::move(*text);
   }
 
-  std::vector<Manifest> manifests(const std::string& prefix) {
-    std::vector<Manifest> out;
+  std::vector<BagManifest> manifests(const std::string& prefix) {
+    std::vector<BagManifest> out;
     for (const std::string& name : files_) {
       const std::string algorithm = algorithm_of(name, prefix);
       if (algorithm.empty()) {
@@ -172,9 +169,9 @@ class Check {
   }
 
   /// Every payload file in every manifest (before 1.0: in one), and what is listed in its place.
-  void check_listing(const std::vector<Manifest>& payload, const std::vector<Manifest>& tags) {
+  void check_listing(const std::vector<BagManifest>& payload, const std::vector<BagManifest>& tags) {
     std::map<std::string, std::size_t> listed;
-    for (const Manifest& manifest : payload) {
+    for (const BagManifest& manifest : payload) {
       for (const BagManifestLine& line : manifest.lines) {
         ++listed[line.path];
         if (!is_payload(line.path)) {
@@ -183,7 +180,7 @@ class Check {
       }
     }
     std::set<std::string> tagged;
-    for (const Manifest& manifest : tags) {
+    for (const BagManifest& manifest : tags) {
       for (const BagManifestLine& line : manifest.lines) {
         tagged.insert(line.path);
         if (is_payload(line.path) || !algorithm_of(line.path, "tagmanifest-").empty()) {
@@ -197,9 +194,9 @@ class Check {
       const auto found = listed.find(name);
       const std::size_t times = found == listed.end() ? 0 : found->second;
       if (is_payload(name) && times == 0 && wanted > 0) {
-        say(name, "no manifest lists it", kMendExtra);
+        say(name, kNoneLists, kMendExtra);
       } else if (is_payload(name) && times < wanted) {
-        say(name, "not every manifest lists it");
+        say(name, kNotAllList);
       }
       if (!is_payload(name) && !tagged.contains(name) && algorithm_of(name, "tagmanifest-").empty()) {
         report_.unrecorded.push_back(name);
@@ -264,29 +261,27 @@ class Check {
     }
   }
 
-  Status check_sums(const std::vector<Manifest>& payload, const std::vector<Manifest>& tags) {
+  Status check_sums(const std::vector<BagManifest>& payload, const std::vector<BagManifest>& tags) {
     std::size_t total = 0;
     for (const auto* group : {&payload, &tags}) {
-      for (const Manifest& manifest : *group) {
+      for (const BagManifest& manifest : *group) {
         total += manifest.lines.size();
       }
     }
-    std::map<std::string, bool> good;
     std::size_t done = 0;
-    for (const auto* group : {&payload, &tags}) {
-      for (const Manifest& manifest : *group) {
+    // The lists of the payload first: whether they are whole says what of the payload is in doubt.
+    for (const auto* group : {&tags, &payload}) {
+      for (const BagManifest& manifest : *group) {
         for (const BagManifestLine& line : manifest.lines) {
           job_.progress("verify", static_cast<double>(done++) / static_cast<double>(total));
           if (job_.cancelled()) {
             return fail(ErrorKind::kCancelled, "verification cancelled", folder_.string());
           }
-          const bool fits = fits_sum(manifest, line);
-          const auto [entry, first] = good.emplace(line.path, fits);
-          entry->second = entry->second && fits;
+          count(line.path, fits_sum(*group, manifest, line));
         }
       }
     }
-    for (const auto& [name, whole] : good) {
+    for (const auto& [name, whole] : good_) {
       if (whole) {
         report_.whole.push_back(name);
       }
@@ -294,8 +289,18 @@ class Check {
     return {};
   }
 
-  bool fits_sum(const Manifest& manifest, const BagManifestLine& line) {
+  void count(const std::string& name, bool fits) {
+    const auto [entry, first] = good_.emplace(name, fits);
+    entry->second = entry->second && fits;
+  }
+
+  /// Whether the file is whole by this line, or in spite of it.
+  bool fits_sum(const std::vector<BagManifest>& group, const BagManifest& manifest,
+                const BagManifestLine& line) {
     if (!files_.contains(line.path)) {
+      if (is_of_another_name(manifest, line)) {
+        return false;
+      }
       if (missing_.insert(line.path).second && !is_hidden(line.path)) {
         say(line.path, to_fetch_.contains(line.path) ? "not here: fetch.txt says where it is" : "missing");
       }
@@ -306,21 +311,54 @@ class Check {
       say(line.path, sum.error().what);
       return false;
     }
-    if (*sum != line.sum) {
-      say(line.path, "not the bytes that " + manifest.name + " says");
+    return *sum == line.sum || is_whole_all_the_same(group, manifest, line, *sum);
+  }
+
+  void say_line(const BagManifest& manifest, const BagManifestLine& line, const std::string& what) {
+    say(manifest.name, "line " + std::to_string(line.line) + " " + what, kMendLine);
+  }
+
+  /// Of a file that is not here: whether it is another one, whose line was damaged. Says so.
+  bool is_of_another_name(const BagManifest& manifest, const BagManifestLine& line) {
+    const std::optional<std::string> name = file_meant(folder_, files_, manifest, line, job_);
+    if (!name) {
       return false;
     }
+    say_line(manifest, line,
+             "is damaged: it names " + line.path + ", which is not here, with the checksum of " + *name +
+                 ", which is whole");
+    std::erase(report_.unrecorded, *name);
+    std::erase_if(report_.damaged, [&](const Error& error) {
+      return error.where == line.path ||
+             (error.where == *name && (error.what == kNoneLists || error.what == kNotAllList));
+    });
+    count(*name, true);
     return true;
+  }
+
+  /// Of a file that has another checksum than the line: says which of the two is in doubt.
+  bool is_whole_all_the_same(const std::vector<BagManifest>& group, const BagManifest& manifest,
+                             const BagManifestLine& line, const std::string& sum) {
+    const auto listed = good_.find(manifest.name);
+    const bool list_is_whole = listed != good_.end() && listed->second;
+    const std::optional<DoubtfulLine> doubt = doubt_of_line(folder_, group, line, sum, list_is_whole, job_);
+    if (doubt) {
+      say_line(manifest, line, doubt->what);
+    } else {
+      say(line.path, "not the bytes that " + manifest.name + " says");
+    }
+    return doubt && doubt->file_is_whole;
   }
 
   const fs::path& folder_;
   JobContext& job_;
   BagDeclaration declaration_{.major = 1, .minor = 0};
   BagReport report_;
-  std::set<std::string> files_;      ///< regular files, relative
-  std::set<std::string> to_fetch_;   ///< of fetch.txt
-  std::set<std::string> missing_;    ///< told already
-  std::vector<std::string> hidden_;  ///< folders that cannot be read, each with '/' at its end
+  std::set<std::string> files_;       ///< regular files, relative
+  std::set<std::string> to_fetch_;    ///< of fetch.txt
+  std::set<std::string> missing_;     ///< told already
+  std::map<std::string, bool> good_;  ///< files that were held against a line, and whether they are whole
+  std::vector<std::string> hidden_;   ///< folders that cannot be read, each with '/' at its end
 };
 
 }  // namespace

@@ -130,7 +130,7 @@ Result<std::vector<BagManifestLine>> parse_bag_manifest(std::string_view text,
       continue;
     }
     const std::size_t end = std::min(lines[i].find_first_of(" \t"), lines[i].size());
-    BagManifestLine line{lower(lines[i].substr(0, end)), {}};
+    BagManifestLine line{lower(lines[i].substr(0, end)), {}, i + 1};
     std::string_view path = lines[i].substr(end);
     while (!path.empty() && is_space(path.front())) {
       path.remove_prefix(1);

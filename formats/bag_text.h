@@ -2,6 +2,7 @@
 // Copyright The Dubsar developers
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -26,8 +27,9 @@ struct BagDeclaration {
 [[nodiscard]] Result<BagDeclaration> parse_bag_declaration(std::string_view text, const std::string& where);
 
 struct BagManifestLine {
-  std::string sum;   ///< lower-case hexadecimal digits
-  std::string path;  ///< decoded, relative to the bag, without "." parts
+  std::string sum;       ///< lower-case hexadecimal digits
+  std::string path;      ///< decoded, relative to the bag, without "." parts
+  std::size_t line = 0;  ///< number in the manifest, from 1
 };
 /// A manifest. A path that is absolute or leads out of the bag is an error, as are one that stands there
 /// twice and a line that is none.

@@ -12,6 +12,7 @@
 #include "formats/ply_header.h"
 #include "formats/ply_scan.h"
 #include "formats/scan_samples.h"
+#include "formats/stoppable_read.h"
 #include "formats/text_scanner.h"
 #include "formats/text_scans.h"
 
@@ -138,7 +139,7 @@ Result<std::vector<ScanData>> read_scan_bytes(std::string_view bytes, const std:
 
 Result<std::vector<ScanData>> read_scan_file(const std::filesystem::path& path,
                                              const GridReadOptions& options) {
-  const Result<std::string> bytes = read_whole_file(path);
+  const Result<std::string> bytes = read_whole_file_unless_stopped(path, options.job);
   if (!bytes) {
     std::error_code ignored;
     return std::filesystem::is_symlink(path, ignored) && !std::filesystem::exists(path, ignored)

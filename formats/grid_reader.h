@@ -11,6 +11,7 @@
 #include <variant>
 #include <vector>
 
+#include "core/job.h"
 #include "core/point_cloud.h"
 #include "core/range_grid.h"
 #include "core/result.h"
@@ -22,6 +23,8 @@ struct GridReadOptions {
   std::optional<double> mm_per_unit{};
   /// Told, with its name, of a scan that was read otherwise than its file says, or that is doubtful.
   std::function<void(const std::string& scan, const std::string& remark)> remark{};
+  /// Stops the reading soon after it was cancelled (kCancelled): it is asked between blocks of the file.
+  const JobContext* job = nullptr;
 };
 
 using ScanData = std::variant<RangeGrid, PointCloud>;

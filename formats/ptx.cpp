@@ -68,7 +68,7 @@ template <class Read>
 auto read_either_way(std::string_view bytes, const std::string& name, const Read& read)
     -> decltype(read(bytes)) {
   auto result = read(bytes);
-  if (result || !bytes.contains(',')) {
+  if (result || result.error().kind == ErrorKind::kCancelled || !bytes.contains(',')) {
     return result;
   }
   const Result<std::string> with_points = with_decimal_points(bytes, name);
@@ -156,7 +156,8 @@ Result<std::string> place_scanner(RangeGrid& grid, const std::string& name) {
 }
 
 /// The next scan; one without a cell where the file has one of no samples.
-Result<RangeGrid> read_one(PtxText& file, const std::string& name, double mm, std::string& remark) {
+Result<RangeGrid> read_one(PtxText& file, const std::string& name, const GridReadOptions& options,
+                           std::string& remark) {
   const Result<PtxHeader> header = read_header(file, name);
   if (!header) {
     return std::unexpected(header.error());
@@ -166,7 +167,8 @@ Result<RangeGrid> read_one(PtxText& file, const std::string& name, double mm, st
   }
   const std::size_t cells =
       static_cast<std::size_t>(header->profiles) * static_cast<std::size_t>(header->samples);
-  const Result<ScanSamples> samples = read_ptx_samples(file.text, file.line_end, cells, mm, name);
+  const Result<ScanSamples> samples =
+      read_ptx_samples(file.text, file.line_end, cells, options.mm_per_unit.value_or(1.0), name, options.job);
   if (!samples) {
     return std::unexpected(samples.error());
   }
@@ -193,7 +195,7 @@ Result<std::vector<ScanData>> read_all(std::string_view bytes, const std::string
   std::vector<std::string> remarks;
   bool any_sample = false;
   while (!file.text.at_end() || grids.empty()) {
-    Result<RangeGrid> grid = read_one(file, name, options.mm_per_unit.value_or(1.0), remarks.emplace_back());
+    Result<RangeGrid> grid = read_one(file, name, options, remarks.emplace_back());
     if (!grid) {
       return std::unexpected(grid.error());
     }

@@ -12,6 +12,7 @@ namespace {
 
 constexpr std::size_t kCoordinates = 3;
 constexpr std::size_t kMostColumns = 7;
+constexpr std::size_t kAskEvery = 4096;  ///< samples
 
 /// The numbers of a line: up to one more than belong there.
 struct Numbers {
@@ -73,7 +74,7 @@ std::unexpected<Error> ptx_error(const TextScanner& text, const std::string& nam
 }
 
 Result<ScanSamples> read_ptx_samples(TextScanner& text, char line_end, std::size_t cells, double mm,
-                                     const std::string& name) {
+                                     const std::string& name, const JobContext* job) {
   ScanSamples samples;
   samples.x.reserve(cells);  // the file has at least as many bytes
   samples.y.reserve(cells);
@@ -81,6 +82,9 @@ Result<ScanSamples> read_ptx_samples(TextScanner& text, char line_end, std::size
   samples.usable.reserve(cells);
   std::size_t columns = 0;
   for (std::size_t i = 0; i < cells; ++i) {
+    if (i % kAskEvery == 0 && job != nullptr && job->cancelled()) {
+      return fail(ErrorKind::kCancelled, "reading was stopped", name);
+    }
     text.skip_blanks();
     const std::size_t start = text.position();
     Numbers line(text.line(line_end));

@@ -13,6 +13,15 @@ struct Registrar::State : ScanModel {
   using ScanModel::ScanModel;
 };
 
+namespace {
+
+/// Not put onto SO(3) once more: what is fixed stays as it was to the last digit.
+RigidTransform as_fixed(const RigidTransform& pose) {
+  return pose.is_rigid(1e-9) ? pose : pose.orthonormalised();
+}
+
+}  // namespace
+
 Registrar::Registrar(const RegistrationOptions& options) : state_(std::make_unique<State>(options)) {}
 Registrar::~Registrar() = default;
 Registrar::Registrar(Registrar&&) noexcept = default;
@@ -40,7 +49,8 @@ bool Registrar::remove(int id, JobContext& job) {
 
 bool Registrar::set_pose(int id, const RigidTransform& model_from_scanner, bool locked, JobContext& job) {
   return model_from_scanner.is_rigid() &&
-         state_->place(id, model_from_scanner.orthonormalised(), locked, job);
+         state_->place(id, locked ? as_fixed(model_from_scanner) : model_from_scanner.orthonormalised(),
+                       locked, job);
 }
 
 Status Registrar::set_hint(int id, const PoseHint& hint, JobContext& job) {
@@ -87,10 +97,7 @@ ScanPose Registrar::add_at(int id, const std::shared_ptr<const RangeGrid>& grid,
     return state_->pose(id);
   }
   if (locked) {
-    // Not put onto SO(3) once more: what is fixed stays as it was to the last digit.
-    state_->place(
-        id, model_from_scanner.is_rigid(1e-9) ? model_from_scanner : model_from_scanner.orthonormalised(),
-        true, job);
+    state_->place(id, as_fixed(model_from_scanner), true, job);
     return state_->pose(id);
   }
   if (is_sought) {

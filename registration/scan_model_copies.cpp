@@ -5,10 +5,19 @@
 // word that the operator gives under either is said of both. The samples tell the motion between copies in
 // two frames, to within their rounding, so that these need no pose of their own.
 #include <algorithm>
+#include <limits>
 
 #include "registration/scan_model.h"
 
 namespace dubsar {
+
+namespace {
+
+bool is_same(const RigidTransform& a, const RigidTransform& b) {
+  return a.row_major() == b.row_major();
+}
+
+}  // namespace
 
 int ScanModel::stands_as(int id) const {
   const auto copy = copies_.find(id);
@@ -99,6 +108,7 @@ bool ScanModel::take_in(int id, const RangeGrid* grid, const PinSet* pins, bool 
     for (const auto& [other, copy] : others) {
       others_from[other] = scan_from_this->inverse() * scan_from(other);
       copies_.erase(other);
+      kept_poses_.erase(other);
     }
     remove(of, job);
   }
@@ -118,6 +128,43 @@ void ScanModel::set_scan_from(int id, const RigidTransform& from) {
   } else {
     scan_from_[id] = from.orthonormalised();
   }
+}
+
+RigidTransform ScanModel::group_from(int id) const {
+  const RigidTransform& group_from_scanner = scans_.at(stands_as(id)).group_from_scanner;
+  const auto kept = kept_poses_.find(id);
+  return kept != kept_poses_.end() && is_same(kept->second.group_from_scanner, group_from_scanner)
+             ? kept->second.group_from_id
+             : group_from_scanner * scan_from(id);
+}
+
+RigidTransform ScanModel::scan_placed(int id, const RigidTransform& model_from_id) const {
+  const auto scan = scans_.find(stands_as(id));
+  const bool stays = scan != scans_.end() && scan->second.usable && scan->second.group == main_group() &&
+                     is_same(group_from(id), model_from_id);
+  return stays ? scan->second.group_from_scanner : model_from_id * scan_from(id).inverse();
+}
+
+void ScanModel::keep_pose(int id, const RigidTransform& model_from_id) {
+  const Scan& scan = scans_.at(stands_as(id));
+  const ScanSurface& surface = *scan.features.surface;
+  const Eigen::Vector3d center_mm = scan_from(id).inverse() * surface.centroid_mm;
+  const RigidTransform lies = scan.group_from_scanner * scan_from(id);
+  const double apart_mm = (lies * center_mm - model_from_id * center_mm).norm() +
+                          0.5 * surface.extent_mm * (lies.inverse() * model_from_id).angle_rad();
+  // The step from one single to the next.
+  const double step_mm = std::numeric_limits<float>::epsilon() * (center_mm.norm() + surface.extent_mm);
+  if (apart_mm <= step_mm) {
+    kept_poses_[id] = {scan.group_from_scanner, model_from_id};
+  }
+}
+
+bool ScanModel::lock_at(int id, const RigidTransform& model_from_id) {
+  const bool locked = lock_near(id, model_from_id) == LockOutcome::kLocked;
+  if (locked) {
+    keep_pose(id, model_from_id);
+  }
+  return locked;
 }
 
 bool ScanModel::leaves_a_copy(int id) {

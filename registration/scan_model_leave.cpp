@@ -17,6 +17,7 @@ constexpr const char* kConnectionGone =
 
 bool ScanModel::remove(int id, JobContext& job) {
   scan_from_.erase(id);
+  kept_poses_.erase(id);
   if (leaves_a_copy(id)) {
     return true;
   }

@@ -48,6 +48,12 @@ bool comes_of_a_session(const fs::path& folder) {
          SessionStore::is_session(folder.parent_path() / name.substr(0, name.size() - kResults.size()));
 }
 
+/// Of a session. Not where nobody can see whether it is there.
+bool lacks_database(const fs::path& session) {
+  std::error_code unknown;
+  return !fs::exists(session / "session.sqlite", unknown) && !unknown;
+}
+
 class Walk {
  public:
   explicit Walk(fs::path root) : root_(std::move(root)) {}
@@ -66,6 +72,7 @@ class Walk {
     }
     std::ranges::sort(files_.paths);
     std::ranges::sort(files_.unread, {}, &UnreadPlace::name);
+    std::ranges::sort(files_.lost_sessions);
     return std::nullopt;
   }
   AnalysedFiles&& files() && { return std::move(files_); }
@@ -103,6 +110,8 @@ class Walk {
         take(beside);
       } else if (is_file(within)) {
         take(within);
+      } else if (lacks_database(folder)) {
+        files_.lost_sessions.push_back(folder.lexically_relative(root_).string());
       }
     }
   }

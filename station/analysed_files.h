@@ -19,6 +19,9 @@ struct UnreadPlace {
 struct AnalysedFiles {
   std::vector<std::filesystem::path> paths;  ///< each once, below the folder, in name order
   std::vector<UnreadPlace> unread;           ///< in name order
+  /// Sessions below the folder that have no session.sqlite and no wedges, in name order, by their names as in
+  /// `unread`: a copy that broke off, perhaps.
+  std::vector<std::string> lost_sessions;
 };
 
 /// The .json files at or below a folder that may be a tablet's wedges, each tablet's once

@@ -171,6 +171,10 @@ Result<EngineResult> Engine::run(JobContext& job) {
       return std::unexpected(*refused);
     }
     const int stored = impl_->stored_count;
+    if (!impl_->is_open) {  // how many scans there are was not counted then
+      return fail(ErrorKind::kCancelled, "stopped while the session was opened; nothing was scanned",
+                  impl_->options.session.string(), "the same command goes on with what is there");
+    }
     return fail(ErrorKind::kCancelled,
                 fmt::format("stopped; {} {} stored", stored, stored == 1 ? "scan is" : "scans are"),
                 impl_->options.session.string(), "the same command goes on with what is there");

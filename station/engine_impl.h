@@ -137,6 +137,7 @@ struct Engine::Impl {
   bool drives = false;                       ///< automatic, and the device can be placed
   bool waits_for_hands_alone = false;        ///< paced, but for scans that were not taken up
   bool begins_again = false;                 ///< the run was started for a ScanAgain
+  bool is_open = false;                      ///< device and session are, and its scans were read
 
   struct Queues {
     BoundedQueue<RawScan> to_store{kQueueLength};

@@ -40,6 +40,9 @@ Status Engine::Impl::load_resumed(JobContext& job) {
   }
   const bool is_of_files = source->capabilities().finite;
   for (const StoredScan& scan : *stored) {
+    if (job.cancelled()) {
+      return std::unexpected(stopped());
+    }
     if (scan.dropped || scan.damaged) {
       // One that stands and is damaged is taken again from its file.
       if (is_of_files && scan.dropped) {
@@ -168,7 +171,11 @@ Status Engine::Impl::open(JobContext& job) {
   if (const Status limited = limit_rig(); !limited) {
     return limited;
   }
-  Result<SessionStore> session = SessionStore::open_or_create(options.session);
+  if (job.cancelled()) {  // nor must one that was stopped
+    return std::unexpected(stopped());
+  }
+  Result<SessionStore> session =
+      SessionStore::open_or_create(options.session, SessionStore::OnDamage::kRebuild, &job);
   if (!session) {
     return std::unexpected(session.error());
   }
@@ -215,6 +222,7 @@ Status Engine::Impl::open(JobContext& job) {
   begins_again = std::ranges::any_of(options.first_commands, [](const OperatorCommand& command) {
     return std::holds_alternative<ScanAgain>(command);
   });
+  is_open = true;
   return {};
 }
 

@@ -61,7 +61,7 @@ Result<Deliverables> keep_all_anew(SessionStore& store, const PlannedAgain& plan
   return files;
 }
 
-Status make_wedges_anew(SessionStore& store, const std::vector<std::string>& names, JobContext& job) {
+Result<bool> make_wedges_anew(SessionStore& store, const std::vector<std::string>& names, JobContext& job) {
   const auto wanted = [&](const std::string& name) { return std::ranges::find(names, name) != names.end(); };
   const Result<Mesh> mesh = read_mesh(store.folder() / kSessionMesh);
   if (!mesh) {
@@ -71,19 +71,20 @@ Status make_wedges_anew(SessionStore& store, const std::vector<std::string>& nam
     const bool same_as_before = kept_wedges(store, *mesh) == KeptWedges::kAsMeasuredNow;
     const auto wedges = keep_wedges(store, *mesh, job);
     if (!wedges || !*wedges) {
-      return wedges ? Status() : std::unexpected(wedges.error());
+      return wedges ? Result<bool>(false) : std::unexpected(wedges.error());
     }
     const std::string said = page_facts_of(store).wedges;
     const std::string now = wedge_sentence(**wedges);
     if (said.empty() || (said == now && same_as_before)) {
-      return {};
+      return false;
     }
     const Status taken = take_pages_back_once(store, kMeasured, kPlan);
-    return taken ? keep_wedges_word(store, now) : taken;
+    const Status told = taken ? keep_wedges_word(store, now) : taken;
+    return told ? Result<bool>(true) : std::unexpected(told.error());
   }
   const Result<WedgeFile> file = read_wedges(store.folder() / kWedges);
   if (!file || !file->text_from_model) {
-    return file ? Status() : std::unexpected(file.error());
+    return file ? Result<bool>(false) : std::unexpected(file.error());
   }
   const PictureWords words = picture_words(file->label, session_name(store.folder()));
   for (const WedgeDrawing& drawing :
@@ -91,10 +92,10 @@ Status make_wedges_anew(SessionStore& store, const std::vector<std::string>& nam
     const std::string name = "analysis/" + drawing.name;
     const auto draw = [&](const fs::path& to) { return write_file_atomically(to, drawing.svg); };
     if (const Status kept = wanted(name) ? store.replace_file(name, draw) : Status(); !kept) {
-      return kept;
+      return std::unexpected(kept.error());
     }
   }
-  return {};
+  return false;
 }
 
 void tell_wedges(PageFacts& facts, const SessionWedges& wedges) {

@@ -29,9 +29,10 @@ namespace dubsar {
 
 /// Wedges and drawings of these names ("analysis/top.svg"), of the mesh that stands in the session: the
 /// drawings of wedges.json as it is, unless that is one of the names; then the wedges are measured, and all
-/// drawn; pages that tell of another number are taken back. Errors: kCancelled, those of reading and writing.
-[[nodiscard]] Status make_wedges_anew(SessionStore& store, const std::vector<std::string>& names,
-                                      JobContext& job);
+/// drawn; pages that tell of another number are taken back: true then. Errors: kCancelled, those of reading
+/// and writing.
+[[nodiscard]] Result<bool> make_wedges_anew(SessionStore& store, const std::vector<std::string>& names,
+                                            JobContext& job);
 
 /// Into what a page tells, in the place of what it told before.
 void tell_wedges(PageFacts& facts, const SessionWedges& wedges);

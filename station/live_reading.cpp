@@ -8,7 +8,6 @@
 
 #include "acquisition/device_uri.h"
 #include "acquisition/operator_log.h"
-#include "acquisition/session_store.h"
 #include "acquisition/sign_off_log.h"
 #include "core/tablet_frame.h"
 #include "formats/checklist_json.h"
@@ -21,6 +20,7 @@
 #include "station/session_drives.h"
 #include "station/session_faults.h"
 #include "station/session_pins.h"
+#include "station/session_scans.h"
 #include "station/told_session.h"
 #include "station/unfinished_scan.h"
 
@@ -67,6 +67,14 @@ void LiveSession::take_own_device(const SessionStore& store) {
   }
 }
 
+Result<SessionStore> LiveSession::open_to_look() {
+  Result<SessionStore> store = SessionStore::open(options_.session, SessionStore::Access::kReadOnly,
+                                                  SessionStore::OnDamage::kRebuild, &looking_);
+  const std::scoped_lock lock(mutex_);
+  state_.stage.clear();  // what follows has none of its own
+  return store;
+}
+
 void LiveSession::read_folder() {
   if (!SessionStore::is_session(options_.session)) {
     look_after_rig();
@@ -78,7 +86,7 @@ void LiveSession::read_folder() {
     state_.phase = LivePhase::kReading;
   }
   changed();
-  const Result<SessionStore> store = SessionStore::open(options_.session, SessionStore::Access::kReadOnly);
+  const Result<SessionStore> store = open_to_look();
   if (store) {
     take_own_device(*store);
   }
@@ -172,6 +180,11 @@ void LiveSession::show_scans(const SessionStore& store, const std::vector<Stored
   show_hints(store);
 }
 
+void LiveSession::note_last_scan(const SessionStore& store) {
+  const std::map<int, std::string> times = stored_times(store);
+  last_scan_ = times.empty() ? std::string() : times.rbegin()->second;
+}
+
 void LiveSession::show_verdict(const SessionStore& store) {
   if (const auto text = store.load_document("red_map"); text && *text) {
     if (auto map = parse_red_map(**text, "red map of the session")) {
@@ -186,6 +199,7 @@ void LiveSession::show_verdict(const SessionStore& store) {
 void LiveSession::show_checklist(const SessionStore& store) {
   if (const auto text = store.load_document("checklist"); text && *text) {
     if (auto list = parse_checklist(**text, "checklist of the session")) {
+      list->disk_free_gib = store.disk_free_gib();  // there is to be room for what comes now
       const std::scoped_lock lock(mutex_);
       state_.checklist = std::move(*list);
     }
@@ -201,6 +215,7 @@ void LiveSession::show_sign_offs(const SessionStore& store) {
 }
 
 void LiveSession::show_faults(const SessionStore& store, const std::vector<StoredScan>& scans) {
+  note_last_scan(store);
   state_.lost_records = lost_records(store);
   state_.damage_found = !store.opening().damage.empty();
   for (const StoredScan& stored : scans) {

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <utility>
 
-#include "acquisition/rig_scan.h"
 #include "station/device_patience.h"
 #include "station/packing.h"
 #include "station/signing.h"
@@ -32,6 +31,7 @@ LiveSession::~LiveSession() {
       engine_->post(KeepHalfScan{});
     }
     closing_ = true;
+    looking_.cancel();
     cancel();
   }
   std::optional<DevicePatience> patience;
@@ -44,17 +44,6 @@ LiveSession::~LiveSession() {
   keep_words();
   keeps_refused_record();  // what refused it may have let go of the session
   watch_.reset();
-}
-
-LiveState LiveSession::state() const {
-  const std::scoped_lock lock(mutex_);
-  LiveState out = state_;
-  const auto silent = device_told_ ? silent_device(*device_told_, kSilentAfter) : std::nullopt;
-  if (out.care && out.care->last) {  // the window may stand open over night
-    out.care->age_days = days_since(out.care->last->when);
-  }
-  out.silence = silent ? std::optional(silence_of(*silent)) : std::nullopt;
-  return out;
 }
 
 GrowingRows LiveSession::look_at_growing(std::uint64_t scan, int known) {
@@ -350,7 +339,7 @@ void LiveSession::run_engine(std::vector<OperatorCommand> first, bool first_scan
   const Result<EngineResult> result = engine->run(*job);
   look_for_broken_off();
   // What was set while it ran is in the session.
-  const Result<SessionStore> store = SessionStore::open(options_.session, SessionStore::Access::kReadOnly);
+  const Result<SessionStore> store = open_to_look();
   Result<SettingWords> kept = store ? kept_settings(*store, uri) : std::unexpected(store.error());
   const auto scans = store ? store->scans() : std::unexpected(store.error());
   {

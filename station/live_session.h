@@ -126,6 +126,8 @@ class LiveSession {
   void rebuild_model(const SessionStore& store, const ScanSet& set, const std::vector<ScanPose>& poses,
                      bool red_alone);
   void run_engine(std::vector<OperatorCommand> first, bool first_scan_waits);
+  /// For reading; it ends when this does (kCancelled).
+  [[nodiscard]] Result<SessionStore> open_to_look();
   void read_folder();
   void take_own_device(const SessionStore& store);
   void look_for_broken_off();
@@ -141,6 +143,7 @@ class LiveSession {
   void show_sign_offs(const SessionStore& store);
   /// What of the session is lost, and of its scans damaged; under the mutex. Told on every opening.
   void show_faults(const SessionStore& store, const std::vector<StoredScan>& scans);
+  void note_last_scan(const SessionStore& store);     ///< likewise
   void show_signature(const CheckedSignOff& latest);  ///< under the mutex
   /// False where it is of other poses, or there is none.
   [[nodiscard]] bool show_stored_model(const SessionStore& store, const std::vector<ScanPose>& poses);
@@ -171,10 +174,13 @@ class LiveSession {
   std::optional<std::chrono::steady_clock::time_point> unseen_since_;  ///< of profiles
   std::shared_ptr<Engine> engine_;                                     ///< while it runs
   std::shared_ptr<JobContext> job_;
+  /// Of the session that is opened to be shown: stopping a run does not break that off, closing does.
+  JobContext looking_{[this](std::string_view stage, double fraction) { progress(stage, fraction); }};
   std::shared_ptr<JobContext> unasked_;  ///< work that nobody waits for, until the worker goes on
   std::function<void()> next_;           ///< a job that was asked for meanwhile
   std::deque<OperatorCommand> later_;    ///< asked for while a job ran that takes none
   std::set<int> hints_kept_;             ///< scans that the session holds a hint of
+  std::string last_scan_;                ///< when it was stored, as in stored_times()
   bool closing_ = false;
   bool scan_later_ = false;    ///< likewise
   bool finish_asked_ = false;  ///< of the run under way

@@ -4,7 +4,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "acquisition/rig_scan.h"
 #include "core/tablet_sides.h"
+#include "station/calibration_age.h"
+#include "station/device_patience.h"
 #include "station/live_session.h"
 
 namespace dubsar {
@@ -20,6 +23,20 @@ std::string remark_line(const LiveScan& scan) {
 }
 
 }  // namespace
+
+LiveState LiveSession::state() const {
+  const std::scoped_lock lock(mutex_);
+  LiveState out = state_;
+  const auto silent = device_told_ ? silent_device(*device_told_, kSilentAfter) : std::nullopt;
+  if (out.care && out.care->last) {  // the window may stand open over night
+    out.care->age_days = days_since(out.care->last->when);
+  }
+  if (out.checklist) {
+    out.checklist->calibration_age_days = calibration_age_now(*out.checklist, last_scan_);
+  }
+  out.silence = silent ? std::optional(silence_of(*silent)) : std::nullopt;
+  return out;
+}
 
 void LiveSession::progress(std::string_view stage, double fraction) {
   {

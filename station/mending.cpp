@@ -12,6 +12,7 @@
 #include "acquisition/session_files.h"
 #include "formats/json_text.h"
 #include "formats/same_bytes.h"
+#include "station/followed_word.h"
 #include "station/kept_surface.h"
 #include "station/package_content.h"
 #include "station/plan_again.h"
@@ -99,8 +100,9 @@ class MakingAnew {
   /// True where it is another one than that which is lost, or than the wedges are of: all that tells of it
   /// came with it then.
   [[nodiscard]] Result<bool> make_mesh();
-  [[nodiscard]] Status make_wedges();
-  [[nodiscard]] Status make_pages();
+  /// True where pages tell of others than these: they were taken back.
+  [[nodiscard]] Result<bool> make_wedges();
+  [[nodiscard]] Status make_pages(bool all);
   [[nodiscard]] Status plan();
   [[nodiscard]] Status keep(const std::initializer_list<const char*>& folders);
 
@@ -148,14 +150,18 @@ Result<bool> MakingAnew::make_mesh() {
   return files ? Result<bool>(is_other) : std::unexpected(files.error());
 }
 
-Status MakingAnew::make_wedges() {
+Result<bool> MakingAnew::make_wedges() {
   if (Status kept = is_named(lost_, kWedges) ? keep({"analysis", "export"}) : Status(); !kept) {
-    return kept;
+    return std::unexpected(kept.error());
   }
   return make_wedges_anew(store_, lost_, job_);
 }
 
-Status MakingAnew::make_pages() {
+Status MakingAnew::make_pages(bool all) {
+  if (all) {
+    const Result<bool> made = keep_pages_anew(store_, *planned_, job_);
+    return made ? Status() : std::unexpected(made.error());
+  }
   std::vector<std::string> pages = lost_;
   std::erase(pages, kSessionMesh);
   PageFacts facts = page_facts_of(store_);
@@ -176,13 +182,22 @@ Status MakingAnew::make() {
   if (!all) {
     return std::unexpected(all.error());
   }
-  if (Status made = !*all && any_below(lost_, "analysis") ? make_wedges() : Status(); !made) {
-    return made;
+  const Result<bool> others = !*all && any_below(lost_, "analysis") ? make_wedges() : Result<bool>(false);
+  if (!others) {
+    return std::unexpected(others.error());
   }
-  if (Status made = !*all && pages_lost ? make_pages() : Status(); !made) {
+  // Those that were taken back for other wedges must not stay so beside the ones that come.
+  if (Status made = !*all && pages_lost ? make_pages(*others) : Status(); !made) {
     return made;
   }
   // The poses may not follow yet what was said of the scans: plan sees to that.
+  const Result<std::string> not_followed = pages_lost ? not_followed_sentence(set_) : std::string();
+  if (!not_followed) {
+    return std::unexpected(not_followed.error());
+  }
+  if (!not_followed->empty()) {
+    return take_pages_back(store_, *not_followed, kFollowAndPlan);
+  }
   return were_taken_back && (mesh_lost || pages_lost) ? take_pages_back(store_, kMended, kFollowAndPlan)
                                                       : Status();
 }

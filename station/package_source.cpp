@@ -16,6 +16,7 @@
 #include "formats/poses_json.h"
 #include "formats/red_map_json.h"
 #include "station/lost_scans.h"
+#include "station/same_places.h"
 #include "station/unplaced_scans.h"
 
 namespace dubsar {
@@ -133,9 +134,13 @@ Status PackageSource::take_kept(JobContext& job) {
     why_anew_ = "the session's record has no verdict that can be read";
     return {};
   }
+  // The mesh and the pages are of the places as they are written there, to the last digit.
+  const auto shown = recorded(store, found_, "export/poses.json");
+  if (const auto lie = shown ? parse_poses(*shown, "export/poses.json") : std::vector<ScanPose>()) {
+    *poses = as_shown(std::move(*poses), *lie);
+  }
   const bool of_scans = recorded(store, found_, "export/red_map.json") == **map_text &&
-                        recorded(store, found_, "export/poses.json") == poses_to_json(*poses) &&
-                        list->scans_lost == lost_scans(*scans) &&
+                        shown == poses_to_json(*poses) && list->scans_lost == lost_scans(*scans) &&
                         list->scans_unplaced == unplaced_scans(*scans, *poses);
   if (!of_scans) {
     why_anew_ = "they are not all of the scans as they stand";

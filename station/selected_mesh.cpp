@@ -66,6 +66,19 @@ std::vector<std::string> meshes_of_selections(const fs::path& session, const std
   return out;
 }
 
+std::optional<fs::path> mesh_of_selections(const fs::path& selections) {
+  const Result<SelectionFile> file = read_selections(selections);
+  const fs::path folder = selections.parent_path().parent_path();
+  for (const fs::path& session : {folder, folder / "kept"}) {
+    const std::vector<std::string> there =
+        file ? meshes_of_selections(session, file->surface_xxh128) : std::vector<std::string>();
+    if (!there.empty()) {
+      return session / there.front();
+    }
+  }
+  return std::nullopt;
+}
+
 std::vector<std::string> kept_selected_meshes(const fs::path& session) {
   std::vector<std::string> out;
   for (const int n : kept_numbers(session)) {

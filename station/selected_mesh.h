@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -26,6 +27,11 @@ inline constexpr const char* kSessionMesh = "mesh/model.ply";
 /// The meshes that a session has of these selections, by their digest, as names in it: its own first.
 [[nodiscard]] std::vector<std::string> meshes_of_selections(const std::filesystem::path& session,
                                                             const std::string& surface_xxh128);
+
+/// The first of them of the session, or of the package (kept/), in which this file of selections lies;
+/// nothing where none is there, and for a file that cannot be read.
+[[nodiscard]] std::optional<std::filesystem::path> mesh_of_selections(
+    const std::filesystem::path& selections);
 
 /// All meshes that stayed for selections, those too whose selections were put aside since, as names in it.
 [[nodiscard]] std::vector<std::string> kept_selected_meshes(const std::filesystem::path& session);

@@ -9,6 +9,7 @@
 
 #include "core/near_cells.h"
 #include "formats/selections_json.h"
+#include "station/selected_mesh.h"
 
 namespace dubsar {
 
@@ -64,7 +65,11 @@ Result<std::vector<MeshSelection>> kept_selections(const fs::path& file, const M
 Result<MeshSelection> kept_selection(const fs::path& file, const Mesh& mesh, const std::string& name) {
   Result<std::vector<MeshSelection>> kept = kept_selections(file, mesh);
   if (!kept) {
-    return std::unexpected(kept.error());
+    Error error = kept.error();
+    if (const std::optional<fs::path> other = mesh_of_selections(file)) {
+      error.mend = "they are of " + other->string() + ": name that mesh, or select again";
+    }
+    return std::unexpected(std::move(error));
   }
   for (MeshSelection& one : *kept) {
     if (one.name == name) {

@@ -21,7 +21,8 @@ namespace dubsar {
 /// cannot be read or that is of another surface.
 [[nodiscard]] Result<std::vector<MeshSelection>> kept_selections(const std::filesystem::path& file,
                                                                  const Mesh& mesh);
-/// One of them, by its name. Errors: as above, and kUsage when there is none of that name.
+/// One of them, by its name. Errors: as above, with the mesh that the file is of where that is kept beside
+/// it, and kUsage when there is none of that name.
 [[nodiscard]] Result<MeshSelection> kept_selection(const std::filesystem::path& file, const Mesh& mesh,
                                                    const std::string& name);
 /// Writes them all; the file of another surface is put aside first (FILE.1 and so on), not lost.

@@ -19,6 +19,7 @@
 #include "station/kept_surface.h"
 #include "station/picture_file.h"
 #include "station/results.h"
+#include "station/same_places.h"
 #include "station/session_pins.h"
 #include "station/session_wedges.h"
 #include "station/station_scan.h"
@@ -225,7 +226,7 @@ std::string why_pages_are_behind(const SessionStore& store) {
     return scan == scans->end() || scan->dropped;
   };
   if (!lie || !scans || !poses || std::ranges::any_of(*lie, has_none_of) ||
-      places_of(*scans, *lie) != places_of(*scans, as_planned(store, *poses, *lie))) {
+      places_of(*scans, *lie) != places_of(*scans, as_planned(store, as_shown(*poses, *lie), *lie))) {
     return "export/poses.json is not of the scans and places that the session holds";
   }
   return {};

@@ -5,11 +5,13 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <mutex>
 #include <span>
 #include <string>
 #include <string_view>
 #include <thread>
 
+#include "core/job.h"
 #include "core/log.h"
 #include "core/units.h"
 #include "drivers/driver.h"
@@ -18,7 +20,9 @@
 
 struct dubsar_device {
   dubsar::replay::ScanFiles files;
-  double rate_per_s = 0;  ///< 0: as fast as can be
+  double rate_per_s = 0;                  ///< 0: as fast as can be
+  std::mutex mutex{};                     ///< of what follows
+  dubsar::JobContext* reading = nullptr;  ///< of a file, which stop() ends
 };
 
 namespace {
@@ -235,9 +239,37 @@ std::int32_t set_setting(dubsar_device* device, const char* key, const dubsar_va
   return DUBSAR_OK;
 }
 
+/// A large file takes long, and no sink can be asked meanwhile whether to go on. Whoever wants it stopped
+/// before it has begun says so again.
+class Reading {
+ public:
+  explicit Reading(dubsar_device& device) : device_(device) { tell(&job_); }
+  ~Reading() { tell(nullptr); }
+  Reading(const Reading&) = delete;
+  Reading& operator=(const Reading&) = delete;
+
+  Result<std::optional<ScanData>> next() { return device_.files.next(job_); }
+
+ private:
+  void tell(JobContext* job) {
+    const std::scoped_lock lock(device_.mutex);
+    device_.reading = job;
+  }
+  dubsar_device& device_;
+  JobContext job_;
+};
+
+std::int32_t stop(dubsar_device* device, dubsar_error* /*error*/) {
+  const std::scoped_lock lock(device->mutex);
+  if (device->reading != nullptr) {
+    device->reading->cancel();
+  }
+  return DUBSAR_OK;
+}
+
 std::int32_t scan(dubsar_device* device, const dubsar_sink* sink, dubsar_error* error) {
   return plugin::fenced(error, [&]() -> std::int32_t {
-    Result<std::optional<ScanData>> data = device->files.next();
+    Result<std::optional<ScanData>> data = Reading(*device).next();
     if (!data) {
       return plugin::report(error, data.error());
     }
@@ -270,6 +302,7 @@ constexpr dubsar_driver kDriver = [] {
   out.get_setting = get_setting;
   out.set_setting = set_setting;
   out.scan = scan;
+  out.stop = stop;
   return out;
 }();
 

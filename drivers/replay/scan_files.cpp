@@ -93,7 +93,7 @@ Result<ScanFiles> ScanFiles::open(const fs::path& path, const GridReadOptions& o
   return files;
 }
 
-Result<std::optional<ScanData>> ScanFiles::next() {
+Result<std::optional<ScanData>> ScanFiles::next(const JobContext& job) {
   while (waiting_.empty()) {
     if (next_file_ == files_.size()) {
       return std::optional<ScanData>();
@@ -102,8 +102,11 @@ Result<std::optional<ScanData>> ScanFiles::next() {
     options_.remark = [this](const std::string& scan, const std::string& remark) {
       remarks_.emplace_back(scan, remark);
     };
+    options_.job = &job;
     Result<std::vector<ScanData>> scans = read_scan_file(files_[next_file_++], options_);
+    options_.job = nullptr;
     if (!scans) {
+      next_file_ -= scans.error().kind == ErrorKind::kCancelled ? 1 : 0;
       return std::unexpected(scans.error());
     }
     waiting_.assign(std::make_move_iterator(scans->begin()), std::make_move_iterator(scans->end()));

@@ -24,8 +24,8 @@ class ScanFiles {
                                               const GridReadOptions& options);
 
   /// The next scan; nothing after the last. An error (with its file) is that file's alone: the next call goes
-  /// on behind it.
-  [[nodiscard]] Result<std::optional<ScanData>> next();
+  /// on behind it. But kCancelled, soon after the job was, leaves it to be read.
+  [[nodiscard]] Result<std::optional<ScanData>> next(const JobContext& job);
 
   /// Nothing when some file must be read to know (PTX holds several scans).
   [[nodiscard]] std::optional<std::int64_t> count() const { return count_; }

@@ -32,6 +32,9 @@ TEST_F(RigScan, ScansAPlaneThroughTheDriverInterface) {
   EXPECT_NEAR(can->rig->field_x_mm, 6.25 - off_middle_mm(), 0.01);
   EXPECT_NEAR(can->rig->field_y_mm, 1.0, 1e-9);
   EXPECT_GT(can->rig->calibration_age_days.value_or(0), 100);
+  // What shows a session later counts the days from the date in it.
+  EXPECT_NE(can->rig->calibration.find(", made " + bench.truth.made_at), std::string::npos)
+      << can->rig->calibration;
   Collect sink;
   const Result<ScanOutcome> outcome = device.scan(sink);
   ASSERT_TRUE(outcome.has_value()) << outcome.error().line();

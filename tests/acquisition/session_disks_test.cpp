@@ -1,18 +1,48 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright The Dubsar developers
-// Sessions on disks that are full or write-protected.
+// Sessions on disks that are full, write-protected or refuse.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/resource.h>
+#include <sys/syscall.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <cerrno>
 #include <csignal>
+#include <string>
 
 #include "acquisition/session_store.h"
 #include "tests/acquisition/session_damage_support.h"
+#include "tests/acquisition/spoil.h"
 #include "tests/support/in_child.h"
 #include "tests/support/temporary_folder.h"
+
+namespace {
+
+/// The disk takes what is written to the log of the tables, and reports an error for it.
+bool refuses_to_sync_the_log = false;
+
+int sync_unless_refused(int file, long call) {
+  char name[4096];
+  const std::string link = "/proc/self/fd/" + std::to_string(file);
+  const ssize_t length = refuses_to_sync_the_log ? ::readlink(link.c_str(), name, sizeof name) : 0;
+  if (length > 0 && std::string(name, static_cast<std::size_t>(length)).ends_with("-wal")) {
+    errno = EIO;
+    return -1;
+  }
+  return static_cast<int>(::syscall(call, file));
+}
+
+}  // namespace
+
+// In the place of the C library's, which SQLite calls.
+extern "C" int fsync(int file) {
+  return sync_unless_refused(file, SYS_fsync);
+}
+extern "C" int fdatasync(int file) {
+  return sync_unless_refused(file, SYS_fdatasync);
+}
 
 namespace dubsar {
 namespace {
@@ -22,6 +52,8 @@ using test::be_bound_by_rights;
 using test::in_child;
 using test::SessionDamageTest;
 using test::small_grid;
+using testing::Contains;
+using testing::HasSubstr;
 using testing::IsEmpty;
 
 constexpr auto kReadOnly = SessionStore::Access::kReadOnly;
@@ -60,6 +92,74 @@ TEST_F(SessionDamageTest, AFullDiskLosesNothingThatWasStored) {
   EXPECT_EQ(store.scans().value().size(), 5U);
   EXPECT_EQ(store.load_grid(4).value().z, small_grid(4).z);
   EXPECT_FALSE(store.load_document("big").value());
+}
+
+/// Three scans in a row that the disk refuses when their rows are committed.
+bool refuses_three(SessionStore& store) {
+  refuses_to_sync_the_log = true;
+  bool all = true;
+  for (int i = 4; i < 7; ++i) {
+    const Result<int> id = store.add_grid(small_grid(i));
+    all = all && !id && id.error().kind == ErrorKind::kStorage;
+  }
+  refuses_to_sync_the_log = false;
+  return all;
+}
+
+TEST_F(SessionDamageTest, CommitsThatTheDiskRefusesInARowAreNoMissingLog) {
+  const int status = in_child([&] {
+    SessionStore store = SessionStore::open(folder_).value();
+    ::_exit(refuses_three(store) ? 0 : 1);
+    return 2;
+  });
+  ASSERT_EQ(status, 0);
+  EXPECT_THAT(SessionStore::open(folder_, kReadOnly)->verify(job_)->lost, IsEmpty());
+  const SessionStore store = SessionStore::open(folder_).value();
+  EXPECT_THAT(store.opening().damage, IsEmpty());
+  ASSERT_EQ(store.scans().value().size(), 5U) << "of those that were refused one may stand, and none more";
+  EXPECT_EQ(store.load_grid(4).value().z, small_grid(4).z);
+  EXPECT_THAT(store.verify(job_)->lost, IsEmpty());
+}
+
+TEST_F(SessionDamageTest, AScanThatTheDiskRefusedIsListedBeforeTheNextOne) {
+  const int status = in_child([&] {
+    SessionStore store = SessionStore::open(folder_).value();
+    if (!refuses_three(store)) {
+      return 1;
+    }
+    const int next = store.next_id().value();
+    if (store.add_grid(small_grid(5), "a remark").value_or(-1) != next || next != 5) {
+      return 2;
+    }
+    return store.scans().value().size() == 6 && store.load_grid(4)->z == small_grid(4).z ? 0 : 3;
+  });
+  ASSERT_EQ(status, 0);
+  const SessionStore store = SessionStore::open(folder_, kReadOnly).value();
+  EXPECT_THAT(store.opening().damage, IsEmpty());
+  ASSERT_EQ(store.scans().value().size(), 6U);
+  EXPECT_EQ(store.scans().value()[5].remark, "a remark");
+  EXPECT_EQ(store.load_grid(5).value().z, small_grid(5).z);
+  EXPECT_TRUE(store.verify(job_)->ok());
+  EXPECT_THAT(store.verify(job_)->lost, IsEmpty());
+}
+
+TEST_F(SessionDamageTest, RowsThatARebuildingDidNotGetToAreNoMissingLog) {
+  test::spoil_both(folder_, "grids/00");  // the rows of all four scans
+  const int status = in_child([&] {
+    refuses_to_sync_the_log = true;  // the new tables stand, and no grid is taken in
+    const Result<SessionStore> store = SessionStore::open(folder_);
+    return !store && store.error().kind == ErrorKind::kStorage ? 0 : 1;
+  });
+  ASSERT_EQ(status, 0);
+  const VerifyReport report = SessionStore::open(folder_, kReadOnly)->verify(job_).value();
+  for (const Error& lost : report.lost) {
+    EXPECT_THAT(lost.line(), testing::Not(HasSubstr("nothing names"))) << "each of them has a name";
+  }
+  const SessionStore store = SessionStore::open(folder_).value();
+  EXPECT_THAT(store.opening().damage, IsEmpty());
+  EXPECT_THAT(store.opening().notes, Contains(HasSubstr("grids/003.grid, whose row was lost")));
+  expect_content(store);
+  EXPECT_THAT(store.verify(job_)->lost, IsEmpty()) << "all of it was known";
 }
 
 TEST_F(SessionDamageTest, AWriteProtectedFolderIsToldAndCanBeRead) {

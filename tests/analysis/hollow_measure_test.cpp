@@ -10,6 +10,7 @@
 #include <cmath>
 #include <memory>
 
+#include "core/wedge_length.h"
 #include "tests/analysis/support/pits.h"
 #include "tests/analysis/support/shapes.h"
 
@@ -105,6 +106,12 @@ TEST(HollowMeasure, WhereTheMeshEndsBeforeAnEdgeDoesNobodyKnowsItsLength) {
   ASSERT_GT(wedge.exit_points_surface_mm[0].x(), 1.5);
   EXPECT_EQ(wedge.beyond_mesh, (std::array{true, false, false}));
   EXPECT_EQ(whole.beyond_mesh, (std::array{false, false, false}));
+  EXPECT_TRUE(length_is_guess(wedge, 0));
+  WedgeOptions to_last_contact;
+  to_last_contact.exits = ExitDefinition::kExtent;
+  const Wedge seen_last = cut.measured(cut.vertices, to_last_contact);
+  EXPECT_EQ(seen_last.beyond_mesh, wedge.beyond_mesh);
+  EXPECT_FALSE(length_is_guess(seen_last, 0)) << "it ends on the mesh";
   EXPECT_LT(wedge.faces_intact[0], whole.faces_intact[0]) << "its outer end is gone";
   EXPECT_TRUE(std::isnan(wedge.sigma.length_mm[0]));
   EXPECT_TRUE(std::isnan(wedge.sigma.volume_mm3));

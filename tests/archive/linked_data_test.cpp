@@ -145,8 +145,12 @@ TEST(WedgeAnnotations, SayByWhatTheTailsTurnGoes) {
   wedge.place = {};
   EXPECT_THAT(wedge_in_words(wedge), ::testing::HasSubstr("directional edge 1.25 mm long, confidence"));
   wedge.beyond_mesh[0] = true;
+  wedge.exit_points_surface_mm = wedge.exit_points_mm;
   EXPECT_THAT(wedge_in_words(wedge),
               ::testing::HasSubstr("1.25 mm long (the mesh ends before it: not measured), confidence"));
+  wedge.exit_points_surface_mm[0] += Eigen::Vector3d(1, 0, 0);
+  EXPECT_THAT(wedge_in_words(wedge), ::testing::HasSubstr("1.25 mm long, confidence"))
+      << "it is measured to where the edge was seen last";
 }
 
 TEST(WedgeAnnotations, SayThatNoClayWasMeasured) {

@@ -94,8 +94,13 @@ TEST(WedgeDrawing, SaysOfALengthThatTheMeshEndsBeforeIt) {
   EXPECT_THAT(drawn(), HasSubstr("edges 2.81 0.73 0.78 mm"));
   EXPECT_THAT(drawn(), Not(HasSubstr("length_beyond_mesh")));
   wedge.beyond_mesh[0] = true;
+  wedge.exit_points_surface_mm = wedge.exit_points_mm;
   EXPECT_THAT(drawn(), HasSubstr("edges 2.81 (the mesh ends before it) 0.73 0.78 mm"));
   EXPECT_THAT(drawn(), HasSubstr(R"("length_beyond_mesh":true})"));
+  // Measured to where the edge was seen last it is no guess.
+  wedge.exit_points_surface_mm[0] += Eigen::Vector3d(1, 0, 0);
+  EXPECT_THAT(drawn(), HasSubstr("edges 2.81 0.73 0.78 mm"));
+  EXPECT_THAT(drawn(), Not(HasSubstr("length_beyond_mesh")));
 }
 
 TEST(WedgeDrawing, WritesASheetForEachSideThatHasWedges) {

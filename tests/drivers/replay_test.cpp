@@ -3,8 +3,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <filesystem>
 #include <fstream>
+#include <stop_token>
+#include <thread>
 
 #include "build_paths.h"
 #include "drivers/loader.h"
@@ -131,6 +134,44 @@ TEST_F(ReplayTest, AnOlderProgramFindsRemarksInItsLog) {
   EXPECT_EQ(called, 1);
   sink.remark = nullptr;
   EXPECT_FALSE(plugin::remark(sink, "the header is wrong"));
+}
+
+/// While it is read no sink is asked whether to go on: Ctrl-C would be answered only minutes later.
+TEST_F(ReplayTest, StopEndsTheReadingOfALargeFileWhichIsThenStillToBeRead) {
+  {
+    std::ofstream file(folder_.path() / "a.xyz");
+    std::string lines;
+    for (int k = 0; k < 20000; ++k) {
+      lines += std::to_string(0.01 * k) + " " + std::to_string(0.02 * (k % 90)) + " 1.25\n";
+    }
+    for (int k = 0; k < 100; ++k) {
+      file << lines;  // 2 million points: most of a second, a stop comes every millisecond
+    }
+  }
+  ASSERT_TRUE(write_grid_file(folder_.path() / "b.grid", small_grid(3, 2)));
+  Result<Device> device = open(folder_.path());
+  ASSERT_TRUE(device);
+  ASSERT_TRUE(device->can_stop());
+  EXPECT_TRUE(device->stop()) << "stopping what does not read is no error";
+  Names none;
+  {
+    const std::jthread stopper([&](const std::stop_token& done) {
+      while (!done.stop_requested()) {
+        std::this_thread::sleep_for(std::chrono::milliseconds(1));
+        EXPECT_TRUE(device->stop());
+      }
+    });
+    const Result<ScanOutcome> stopped = device->scan(none);
+    ASSERT_FALSE(stopped);
+    EXPECT_EQ(stopped.error().kind, ErrorKind::kCancelled) << stopped.error().line();
+  }
+  EXPECT_EQ(none.rows, 0);
+  Names first;
+  ASSERT_EQ(device->scan(first).value(), ScanOutcome::kScanned);
+  EXPECT_EQ(first.last.source, "a.xyz");
+  Names second;
+  ASSERT_EQ(device->scan(second).value(), ScanOutcome::kScanned);
+  EXPECT_EQ(second.last.source, "b.grid");
 }
 
 TEST_F(ReplayTest, ReadsEachFileOnlyWhenItsTurnHasCome) {

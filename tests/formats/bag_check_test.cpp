@@ -8,8 +8,10 @@
 #include <fstream>
 
 #include "formats/bag_text.h"
+#include "formats/self_checked.h"
 #include "formats/sha2.h"
 #include "tests/formats/support/small_bag.h"
+#include "tests/support/files.h"
 #include "tests/support/in_child.h"
 
 namespace dubsar {
@@ -20,6 +22,7 @@ using testing::Contains;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
+using testing::MatchesRegex;
 using testing::UnorderedElementsAre;
 
 using BagTest = test::SmallBag;
@@ -50,6 +53,65 @@ TEST_F(BagTest, EveryFlippedByteIsNoticed) {
     }
   }
   EXPECT_TRUE(check().ok());
+}
+
+/// No list covers it: but its digits and names tell that what it lists is whole.
+TEST_F(BagTest, AFlippedBitOfTheTagManifestIsNoFaultOfWhatItLists) {
+  const std::string name = "tagmanifest-sha512.txt";
+  const std::string text = test::text_of_file(bag() / name);
+  int named = 0;
+  for (std::size_t bit = 0; bit < 8 * text.size(); bit += 3) {
+    std::string flipped = text;
+    flipped[bit / 8] = static_cast<char>(flipped[bit / 8] ^ (1 << (bit % 8)));
+    put(name, flipped);
+    const BagReport report = check();
+    for (const Error& error : report.damaged) {  // none where a digit became a capital
+      EXPECT_EQ(error.where, name) << bit << ": " << error.line();
+      EXPECT_THAT(error.what, HasSubstr("line ")) << bit;
+      if (error.what.find("is damaged: ") != std::string::npos) {
+        EXPECT_GE(report.whole.size(), 5U) << error.line();  // the next line may be a part of its name
+        ++named;
+      }
+    }
+  }
+  EXPECT_GT(named, 300);
+  put(name, text);
+  put("bag-info.txt", "Payload-Oxum: 23.2\n");
+  EXPECT_THAT(faults(), ElementsAre("bag-info.txt: not the bytes that tagmanifest-sha512.txt says"));
+}
+
+TEST_F(BagTest, ADamagedLineOfAManifestIsTold) {
+  std::string text = test::text_of_file(bag() / "manifest-sha512.txt");
+  text[5] = text[5] == '0' ? '1' : '0';
+  put("manifest-sha512.txt", text);
+  EXPECT_THAT(faults(), UnorderedElementsAre(
+                            "manifest-sha512.txt: not the bytes that tagmanifest-sha512.txt says",
+                            "manifest-sha512.txt: line 1 is damaged: of the checksum of data/master.ply "
+                            "1 of 128 digits are others, and the file is whole"));
+  text = line("data/mastes.ply", sum512("data/master.ply")) + text.substr(text.find('\n') + 1);
+  put("manifest-sha512.txt", text);
+  EXPECT_THAT(faults(), UnorderedElementsAre(
+                            "manifest-sha512.txt: not the bytes that tagmanifest-sha512.txt says",
+                            "manifest-sha512.txt: line 1 is damaged: it names data/mastes.ply, which is "
+                            "not here, with the checksum of data/master.ply, which is whole"));
+  EXPECT_THAT(check().whole, Contains("data/master.ply"));
+}
+
+/// What a file says of itself counts where nothing speaks for the list.
+TEST_F(BagTest, AFilesOwnChecksumSpeaksForItUnlessTheListIsWhole) {
+  const std::string said = with_own_checksum("{\"selections\":[]}");
+  put("data/selections.json", said);
+  fs::remove(bag() / "manifest-sha256.txt");
+  const std::string others = test::text_of_file(bag() / "manifest-sha512.txt");
+  put("manifest-sha512.txt", others + line("data/selections.json", std::string(128, '7')));
+  put("bag-info.txt", "Source-Organization: A museum\n");
+  fs::remove(bag() / "tagmanifest-sha512.txt");
+  EXPECT_THAT(faults(), ElementsAre("manifest-sha512.txt: line 3 has another checksum than "
+                                    "data/selections.json, whose own fits: the line is damaged, or somebody "
+                                    "changed the file on purpose"));
+  EXPECT_THAT(check().whole, testing::Not(Contains("data/selections.json")));
+  put("tagmanifest-sha512.txt", line("manifest-sha512.txt", sum512("manifest-sha512.txt")));
+  EXPECT_THAT(faults(), ElementsAre("data/selections.json: not the bytes that manifest-sha512.txt says"));
 }
 
 TEST_F(BagTest, WhereDubsarWroteItALostTagManifestIsDamage) {
@@ -157,7 +219,9 @@ TEST_F(BagTest, OlderSumsCountBesideBetterOnes) {
   EXPECT_THAT(faults(), IsEmpty());
   EXPECT_THAT(check().algorithms, Contains("md5"));
   put("manifest-md5.txt", line("data/master.ply", std::string(32, '0')) + picture);
-  EXPECT_THAT(faults(), ElementsAre("data/master.ply: not the bytes that manifest-md5.txt says"));
+  EXPECT_THAT(faults(),
+              ElementsAre(MatchesRegex("manifest-md5.txt: line 1 is damaged: it has another checksum "
+                                       "than data/master.ply, which is whole by manifest-sha.*")));
   put("manifest-sha1.txt", line("data/master.ply", digest_hex(Digest::kSha1, "ply and so on\n")));
   EXPECT_THAT(faults(), Contains("data/rückseite 100%.png: not every manifest lists it"));
 }

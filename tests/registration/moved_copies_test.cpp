@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <map>
 #include <vector>
 
@@ -181,6 +182,50 @@ TEST_F(MovedCopies, AWordIsSaidInTheFrameOfItsId) {
   expect_copy(5, 1, 2);
   EXPECT_EQ(registrar.lock_near(5, fixed), LockOutcome::kLocked);
   EXPECT_EQ(registrar.lock_near(1, fixed), LockOutcome::kElsewhere);
+}
+
+TEST_F(MovedCopies, ALockKeepsPosesToTheLastDigit) {
+  add(0, grids()[0]);
+  add(1, grids()[1]);
+  for (int k = 0; k < 4; ++k) {
+    add_moved(7 + k, grids()[1], k);
+  }
+  add(2, grids()[2]);
+  finalize();
+  const std::vector<ScanPose> before = registrar.poses();
+  for (int id = 7; id < 11; ++id) {
+    const auto stored = pose(id).model_from_scanner.row_major();
+    ASSERT_TRUE(registrar.set_pose(id, pose(id).model_from_scanner, true, job));
+    EXPECT_TRUE(pose(id).locked);
+    EXPECT_EQ(pose(id).model_from_scanner.row_major(), stored) << id;
+  }
+  for (const ScanPose& was : before) {
+    if (was.id == 1 || was.id > 6) {  // the others are laid anew beside one that is fixed
+      EXPECT_EQ(pose(was.id).model_from_scanner.row_major(), was.model_from_scanner.row_major()) << was.id;
+    }
+  }
+  // The same session once more, as far as it is locked: whichever of the ids comes first.
+  for (const bool original_too : {false, true}) {
+    Registrar again;
+    for (const ScanPose& was : before) {
+      const bool is_copy = was.id > 6;
+      const RangeGrid grid =
+          is_copy ? test::moved(grids()[1], frame(was.id - 7)) : grids()[static_cast<std::size_t>(was.id)];
+      if (is_copy || original_too) {
+        again.add_at(was.id, shared(grid), nullptr, was.model_from_scanner, true, job);
+      } else {
+        again.add(was.id, shared(grid), nullptr, job);
+      }
+    }
+    ASSERT_TRUE(again.finalize(job));
+    for (const ScanPose& now : again.poses()) {
+      const auto was = std::ranges::find(before, now.id, &ScanPose::id);
+      if (now.id > 6 || original_too) {
+        EXPECT_TRUE(now.locked) << now.id;
+        EXPECT_EQ(now.model_from_scanner.row_major(), was->model_from_scanner.row_major()) << now.id;
+      }
+    }
+  }
 }
 
 /// A part of a scan may find its place where the whole finds none, but beside it says nothing more.

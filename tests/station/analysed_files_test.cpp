@@ -78,6 +78,20 @@ TEST_F(AnalysedFilesTest, WhatIsHiddenKeptAsideOrABagIsLeftOut) {
   EXPECT_THAT(names_in("s"), ElementsAre("analysis/wedges.json"));
 }
 
+TEST_F(AnalysedFilesTest, ASessionOfGridsAloneIsNotPassedOverInSilence) {
+  for (const char* name : {"a/wedges.json", "half/grids/000.grid", "half/grids/001.grid",
+                           "deep/er/session.backup.sqlite", "new/session.sqlite", "new/grids/000.grid",
+                           "done/grids/000.grid", "done.results/wedges.json", "aside.kept-1/grids/000.grid",
+                           "scans/grids/first.grid", "bag/bagit.txt", "bag/data/grids/000.grid"}) {
+    put(name);
+  }
+  const auto found = analysed_files(at(""));
+  ASSERT_TRUE(found);
+  EXPECT_THAT(found->lost_sessions, ElementsAre("deep/er", "half"));
+  EXPECT_THAT(found->unread, IsEmpty());
+  EXPECT_THAT(found->paths, ElementsAre(at("a/wedges.json"), at("done.results/wedges.json")));
+}
+
 TEST_F(AnalysedFilesTest, LinksAreFollowedAndGiveNothingTwice) {
   for (const char* name : {"a/wedges.json", "b/x/wedges.json", "../far/s/session.sqlite",
                            "../far/s/analysis/wedges.json", "../far/m/wedges.json", "../far/one.json"}) {

@@ -7,8 +7,12 @@
 
 #include <fstream>
 
+#include "acquisition/session_store.h"
 #include "formats/corrections_json.h"
+#include "formats/file_label_reader.h"
+#include "formats/mesh_io.h"
 #include "formats/wedges_json.h"
+#include "tests/acquisition/session_support.h"
 #include "tests/station/support/command.h"
 #include "tests/support/temporary_folder.h"
 
@@ -215,6 +219,39 @@ TEST_F(Correct, WedgesOfAnotherMeshAreNotThisOnes) {
   EXPECT_EQ(outcome.status, 0) << outcome.err;
   EXPECT_THAT(outcome.err, HasSubstr("were made on tablet.ply and are made on neighbour.ply"));
   EXPECT_EQ(read_wedges(in("n.json"))->corrections, 1U);
+}
+
+/// The workflows analyse a mesh that was stitched beside its session, with what was said in the session.
+TEST_F(Correct, OnesOfASessionAreNotOfAnotherMeshBesideIt) {
+  const auto make_session = [](const std::string& name) {
+    SessionStore store = SessionStore::open_or_create(in(name)).value();
+    EXPECT_TRUE(store.add_grid(test::small_grid(1)));
+    const CorrectionFile said{"model.ply",
+                              {{CorrectionKind::kDelete, {wedges().wedges[3].depth_point_mm}, {}, {}, 0}}};
+    EXPECT_TRUE(write_corrections(in(name + "/analysis/wedges.corrections.json"), said));
+  };
+  make_session("S");
+  make_session("T");
+  for (const char* folder : {"S.results", "elsewhere"}) {
+    std::filesystem::create_directory(in(folder));
+    std::filesystem::copy_file(in("tablet.ply"), in(folder + std::string("/mesh.ply")));
+  }
+  // As `dubsar stitch` writes the mesh of a session that has no museum number.
+  Mesh mesh = read_mesh(in("tablet.ply")).value();
+  ASSERT_TRUE(write_mesh(in("elsewhere/of_s.ply"), mesh, label_of_words({{"Session", "S"}})));
+  const auto said_of = [](const std::string& file, const std::string& session) {
+    const Outcome outcome = run_command({"analyze", in(file), "-o", in("beside.json"), "--again",
+                                         "--corrections", in(session + "/analysis/wedges.corrections.json")});
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    EXPECT_EQ(read_wedges(in("beside.json"))->corrections, 1U);
+    return outcome.err;
+  };
+  for (const char* file : {"S.results/mesh.ply", "elsewhere/of_s.ply"}) {
+    EXPECT_THAT(said_of(file, "S"), ::testing::Not(HasSubstr("were made on"))) << file;
+    EXPECT_THAT(said_of(file, "T"), HasSubstr("were made on model.ply and are made on")) << file;
+  }
+  EXPECT_THAT(said_of("elsewhere/mesh.ply", "S"),
+              HasSubstr("were made on model.ply and are made on mesh.ply"));
 }
 
 TEST_F(Correct, WhatIsAddedIsMarkedInEveryList) {

@@ -159,6 +159,10 @@ TEST_F(ExportByHand, SelectionsKeepTheirMeshWhereASignedOneTakesItsPlace) {
   const Outcome part = run_command({"mesh", "part", (session_ / kept).string(), "--selection", "line 3", "-o",
                                     at("part of it.ply").string()});
   EXPECT_EQ(part.status, 0) << part.err;
+  const Outcome refused = run_command({"mesh", "part", (session_ / "mesh/model.ply").string(), "--selection",
+                                       "line 3", "-o", at("no part.ply").string()});
+  EXPECT_EQ(refused.status, 2);
+  EXPECT_THAT(refused.err, HasSubstr("they are of " + (session_ / kept).string() + ": name that mesh"));
   // What is signed is of one surface: so many wedges as the report says, in the session and in its package.
   const auto wedges = nlohmann::json::parse(bytes_of(session_ / "analysis/wedges.json"));
   const std::string count = wedges["wedges"].empty()
@@ -169,6 +173,10 @@ TEST_F(ExportByHand, SelectionsKeepTheirMeshWhereASignedOneTakesItsPlace) {
   ASSERT_EQ(done.status, 0) << done.err;
   EXPECT_THAT(done.err, Not(HasSubstr("measured now"))) << "the session has those of its mesh";
   EXPECT_TRUE(packed("kept/" + kept) == before);
+  const Outcome of_package = run_command(
+      {"mesh", "part", (session_ / "mesh/model.ply").string(), "--selection", "line 3", "--selections",
+       (bag() / "data/wedges/selections.json").string(), "-o", at("no part.ply").string()});
+  EXPECT_THAT(of_package.err, HasSubstr("they are of " + (bag() / "data/kept" / kept).string()));
   EXPECT_THAT(readme(), HasSubstr("by their numbers in kept/" + kept));
   EXPECT_THAT(packed("report/report.html"), HasSubstr(count));
   EXPECT_THAT(packed("session/run.json"), HasSubstr(count));

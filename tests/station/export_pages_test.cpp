@@ -6,9 +6,13 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <filesystem>
 #include <string>
+#include <vector>
 
+#include "acquisition/session_store.h"
+#include "formats/poses_json.h"
 #include "tests/station/support/exported.h"
 
 namespace dubsar {
@@ -76,6 +80,31 @@ TEST_F(ExportOfPages, ThatAreReplacedForADamagedMeshAreToldSo) {
   EXPECT_THAT(done.err, HasSubstr("not packed: mesh/model.ply is not as it was stored (missing)"));
   EXPECT_TRUE(packed("kept/export/checklist.html") == bytes_of(session_ / "export/checklist.html"));
   EXPECT_TRUE(fs::exists(bag() / "data/model"));
+}
+
+using ExportOfUnsignedPages = ExportOfACopy;
+
+TEST_F(ExportOfUnsignedPages, AreThoseOfTheSessionWhereAPlaceWentToAnotherFrameAndBack) {
+  const std::string shown = bytes_of(session_ / "export/poses.json");
+  {
+    SessionStore store = SessionStore::open(session_).value();
+    std::vector<ScanPose> poses = store.poses().value();
+    for (ScanPose& pose : poses) {
+      ASSERT_EQ(pose.status, PoseStatus::kRegistered);
+      double& x_mm = pose.model_from_scanner.translation_mm.x();
+      x_mm = std::nextafter(x_mm, 1e3);
+    }
+    ASSERT_TRUE(store.save_poses(poses));
+    ASSERT_FALSE(poses_to_json(poses) == shown);
+  }
+  EXPECT_EQ(run_command({"verify", session_.string(), "--json"}).json()["behind"].size(), 0U);
+  const Outcome done = run_command({"-v", "export", session_.string(), "--to", bag().string(), "--json",
+                                    "--without", "renderings,features,grid-ply"});
+  ASSERT_EQ(done.status, 0) << done.err;
+  EXPECT_THAT(done.err, Not(HasSubstr("worked out anew")));
+  for (const char* page : {"checklist.html", "report.html"}) {
+    EXPECT_TRUE(packed(std::string("report/") + page) == bytes_of(session_ / "export" / page)) << page;
+  }
 }
 
 // What was signed is not of these scans any more, and in session/events.json.

@@ -103,6 +103,28 @@ TEST_F(SessionPages, OfAPlaceThatTheModelCannotHoldAreNotBehind) {
   EXPECT_EQ(why_pages_are_behind(store_), "") << "pages of that version";
 }
 
+TEST_F(SessionPages, OfAPlaceThatWentToAnotherFrameAndBackAreNotBehind) {
+  ASSERT_TRUE(keep_verdict(store_, RedMap(), Checklist()));
+  pose_.model_from_scanner = RigidTransform::from_twist({0.3, -0.2, 1.1}, {41.7, -13.9, 260.1});
+  write_all(pose_);
+  const RigidTransform other = RigidTransform::from_twist({-2.1, 0.7, 0.4}, {612.3, -87.1, 19.9});
+  ScanPose back = pose_;
+  back.model_from_scanner = pose_.model_from_scanner * other.inverse() * other;
+  ASSERT_NE(back.model_from_scanner.row_major(), pose_.model_from_scanner.row_major());
+  ASSERT_TRUE(store_.save_poses({back}));
+  EXPECT_EQ(why_pages_are_behind(store_), "");
+  for (const int axis : {0, 1, 2}) {
+    ScanPose moved = pose_;
+    moved.model_from_scanner.translation_mm[axis] += 1e-10;
+    ASSERT_TRUE(store_.save_poses({moved}));
+    EXPECT_THAT(why_pages_are_behind(store_), HasSubstr("poses.json is not of")) << axis;
+    moved = pose_;
+    moved.model_from_scanner.rotation(axis, 0) += 1e-13;
+    ASSERT_TRUE(store_.save_poses({moved}));
+    EXPECT_THAT(why_pages_are_behind(store_), HasSubstr("poses.json is not of")) << axis;
+  }
+}
+
 TEST_F(SessionPages, SayWhatMakesThemAnew) {
   ASSERT_TRUE(keep_verdict(store_, RedMap(), Checklist()));
   write_all(pose_);

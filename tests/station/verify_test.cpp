@@ -10,6 +10,7 @@
 #include <random>
 
 #include "core/shell_word.h"
+#include "formats/corrections_json.h"
 #include "formats/self_checked.h"
 #include "tests/acquisition/session_support.h"
 #include "tests/station/support/byte_flips.h"
@@ -158,6 +159,56 @@ TEST_F(Verify, WhatIsWholeStaysAsItIsBesideWhatIsMended) {
               testing::IsSupersetOf({"mesh/model.ply.damaged-1", "analysis/wedges.json.before-1"}));
   EXPECT_TRUE(bytes_of(session_ / "analysis/wedges.json.before-1") == wedges);
   EXPECT_THAT(report["behind"], IsEmpty());
+}
+
+/// Signed, and what a person says of the wedges since makes them others.
+TEST_F(Verify, PagesAndWedgesThatAreLostTogetherAreMadeOfEachOther) {
+  ASSERT_EQ(run_command({"session", "describe", session_.string(), "--museum-number", "BM 1"}).status, 0);
+  ASSERT_EQ(
+      run_command({"session", "sign", session_.string(), "--name", "A. Reader", "--incomplete", "a trial"})
+          .status,
+      0);
+  WedgeCorrection gone;
+  gone.at_mm = {{1, 2, 3}};
+  ASSERT_TRUE(write_corrections(session_ / "analysis/wedges.corrections.json", {"model.ply", {gone}}));
+  for (const std::vector<std::string>& lost :
+       {std::vector<std::string>{"export/report.html"},
+        std::vector<std::string>{"export/report.html", "export/checklist.html"}}) {
+    for (const std::string& name : lost) {
+      fs::remove(session_ / name);
+    }
+    fs::remove(session_ / "analysis/wedges.json");
+    const auto report = verify(0, {"--repair"});
+    EXPECT_THAT(report["behind"], IsEmpty()) << report["behind"];
+    EXPECT_THAT(report["repair"]["made_anew"].get<std::vector<std::string>>(),
+                testing::IsSupersetOf({"analysis/wedges.json", "export/report.html"}));
+    for (const char* page : {"export/report.html", "export/checklist.html"}) {
+      EXPECT_THAT(bytes_of(session_ / page), testing::AllOf(HasSubstr("A. Reader"), HasSubstr("BM 1")))
+          << page;
+      EXPECT_THAT(bytes_of(session_ / page), Not(HasSubstr("<h2>Behind</h2>"))) << page;
+    }
+    const auto red_map = nlohmann::json::parse(bytes_of(session_ / "export/red_map.json"));
+    EXPECT_FALSE(red_map.contains("behind"));
+    const auto wedges = nlohmann::json::parse(bytes_of(session_ / "analysis/wedges.json"));
+    EXPECT_THAT(bytes_of(session_ / "export/report.html"),
+                HasSubstr(wedges["wedges"].empty()
+                              ? "No wedges were found; " + std::to_string(wedges["rejected"].size())
+                              : std::to_string(wedges["wedges"].size()) + " wedges were measured"));
+    gone.at_mm.front().x() += 1;
+    ASSERT_TRUE(write_corrections(session_ / "analysis/wedges.corrections.json", {"model.ply", {gone}}));
+  }
+}
+
+TEST_F(Verify, PagesThatWereBehindAndAreLostComeBackAsSuch) {
+  ASSERT_EQ(run_command({"session", "drop", session_.string(), "2"}).status, 0);
+  fs::remove_all(session_ / "export");
+  const auto report = verify(0, {"--repair"});
+  EXPECT_EQ(report["behind"].size(), 2U) << report["behind"];
+  for (const char* page : {"export/report.html", "export/checklist.html"}) {
+    EXPECT_THAT(bytes_of(session_ / page), HasSubstr("<h2>Behind</h2>")) << page;
+    EXPECT_THAT(bytes_of(session_ / page), HasSubstr("dubsar register and dubsar plan")) << page;
+  }
+  EXPECT_TRUE(nlohmann::json::parse(bytes_of(session_ / "export/red_map.json")).contains("behind"));
 }
 
 TEST_F(Verify, AGridComesBackFromACopyAndFromNowhereElse) {

@@ -36,6 +36,19 @@ without="a session without its session.sqlite, left out; dubsar verify --repair 
 list-tablets: lost.lock: $without
 list-tablets: lost.sums: $without
 list-tablets: lost: $without" ] || fail "list-tablets says: $said"
+# Or by its grids alone, as a copy has that broke off; a folder of other grids is none, and one with a name of any bytes is.
+odd=$'lost.o\xff'
+mkdir -p "$folder"/lost.grids/{grids,mesh} "$folder/$odd/grids" "$folder"/lost.other/{grids,first/grids,grids/012}
+touch "$folder"/lost.grids/{grids/000.grid,grids/001.grid,mesh/model.ply} "$folder/$odd/grids/1000.grid" \
+  "$folder"/lost.other/{grids/first.grid,grids/000.gridx,grids/012a.grid,first/grids/12.grid,grids/012/345.grid}
+[ "$("$workflows/list-tablets" "$folder" 2>"$folder/said")" = "$listed" ] || fail "a session of grids alone is listed"
+said=$(LC_ALL=C sort "$folder/said")
+[ "$said" = "list-tablets: lost.grids: $without
+list-tablets: lost.link: $without
+list-tablets: lost.lock: $without
+list-tablets: $odd: $without
+list-tablets: lost.sums: $without
+list-tablets: lost: $without" ] || fail "list-tablets says: $said"
 rm -r "$folder"/lost.*
 listed=$("$workflows/list-tablets" "$folder/session")
 [ "$listed" = . ] || fail "list-tablets of a session: $listed"

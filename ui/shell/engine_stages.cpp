@@ -11,6 +11,7 @@ namespace {
 /// within a sentence they may be a file's name.
 constexpr EnginePhrase kStages[] = {
     {"reading scans", "Scans werden gelesen"},
+    {"checking the session", "Sitzung wird geprüft"},
     {"reading the session", "Sitzung wird gelesen"},
     {"registering", "Scans werden eingepasst"},
     {"relax", "Lagen werden ausgeglichen"},

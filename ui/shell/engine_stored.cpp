@@ -54,6 +54,8 @@ constexpr EnginePhrase kStored[] = {
     {"the folder holds other things and no session", "der Ordner enthält anderes und keine Sitzung"},
     {"name a new or an empty folder", "einen neuen oder leeren Ordner nennen"},
     {"cannot make the folder", "der Ordner lässt sich nicht anlegen"},
+    {"stopped while the session was opened", "beim Öffnen der Sitzung angehalten"},
+    {"; nothing was scanned", "; nichts wurde gescannt"},
     {"no session there", "dort ist keine Sitzung"},
     {"name the folder that a scan was stored in", "den Ordner nennen, in dem ein Scan gespeichert ist"},
     {"the session was opened for reading only", "die Sitzung ist nur zum Lesen geöffnet"},
