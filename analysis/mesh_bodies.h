@@ -2,6 +2,8 @@
 // Copyright The Dubsar developers
 #pragma once
 
+#include <algorithm>
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -31,6 +33,29 @@ struct BodyMesh {
   std::vector<std::uint32_t> vertex;  ///< [of mesh] of the whole
 };
 [[nodiscard]] BodyMesh body_mesh(const Mesh& mesh, const std::vector<std::uint8_t>& of, std::size_t body);
+
+/// What `measure` gives of each body as a mesh of its own, a value a vertex, put together: [V]. Of one body
+/// alone, where `of` is empty, of the mesh itself. Empty where it is empty of a body (cancelled).
+template <class Measure>
+[[nodiscard]] auto of_each_body(const Mesh& mesh, const std::vector<std::uint8_t>& of, const Measure& measure)
+    -> decltype(measure(mesh)) {
+  if (of.empty()) {
+    return measure(mesh);
+  }
+  decltype(measure(mesh)) all(mesh.positions.size());
+  const std::size_t bodies = std::size_t{1} + *std::max_element(of.begin(), of.end());
+  for (std::size_t b = 0; b < bodies; ++b) {
+    const BodyMesh body = body_mesh(mesh, of, b);
+    const auto some = measure(body.mesh);
+    if (some.size() != body.vertex.size()) {
+      return {};
+    }
+    for (std::size_t i = 0; i < some.size(); ++i) {
+      all[body.vertex[i]] = some[i];
+    }
+  }
+  return all;
+}
 
 /// Adds what stages took of one body to what they took of others.
 void add_times(const StageTimes& some, StageTimes* all);

@@ -12,8 +12,7 @@ namespace dubsar {
 
 namespace {
 
-constexpr std::size_t kLengths = 4;  // the first features are lengths
-constexpr double kLogScale = 0.2;    // of a length's logarithm
+constexpr double kLogScale = 0.2;  // of a length's logarithm
 constexpr double kAngleScaleDeg = 8;
 /// A wedge whose directional edge leads by no more than this is a Winkelhaken.
 constexpr double kStubby = 0.3;
@@ -22,18 +21,42 @@ constexpr double kKindDeg = 25;
 constexpr double kLeastRise = 0.03;
 
 double on_scale(std::size_t feature, double value) {
-  return feature < kLengths ? std::log(std::max(value, 1e-3)) / kLogScale : value / kAngleScaleDeg;
+  return feature < kWedgeLengths ? std::log(std::max(value, 1e-3)) / kLogScale : value / kAngleScaleDeg;
 }
 
-WedgeProfile profile_of(std::optional<Face> side, const std::vector<const Wedge*>& wedges) {
+using Quantiles = std::array<double, kProfileQuantiles>;
+
+/// Linear between values; 0 of none.
+Quantiles quantiles_of(std::vector<double> values) {
+  Quantiles out{};
+  std::ranges::sort(values);
+  for (std::size_t q = 0; q < kProfileQuantiles && !values.empty(); ++q) {
+    const double at = static_cast<double>(values.size() - 1) * static_cast<double>(q + 1) /
+                      static_cast<double>(kProfileQuantiles + 1);
+    const auto low = static_cast<std::size_t>(at);
+    const std::size_t high = std::min(low + 1, values.size() - 1);
+    const double part = at - static_cast<double>(low);
+    out[q] = (1 - part) * values[low] + part * values[high];
+  }
+  return out;
+}
+
+enum class AnglesOf { kAll, kReadable };
+
+bool has_readable_angles(const Wedge& wedge) {
+  return wedge.intact >= kLeastIntact && wedge.roundness <= kMostRoundness;
+}
+
+WedgeProfile profile_of(std::optional<Face> side, const std::vector<const Wedge*>& wedges, AnglesOf angles) {
   WedgeProfile profile;
   profile.side = side;
   profile.count = static_cast<int>(wedges.size());
   std::array<std::vector<double>, kWedgeFeatures.size()> values;
   for (const Wedge* wedge : wedges) {
     const WedgeFeatures features = wedge_features(*wedge);
+    const bool readable = angles == AnglesOf::kAll || has_readable_angles(*wedge);
     for (std::size_t f = 0; f < features.size(); ++f) {
-      if (!std::isnan(features[f])) {
+      if (!std::isnan(features[f]) && (f < kWedgeLengths || readable)) {
         values[f].push_back(features[f]);
       }
     }
@@ -41,17 +64,29 @@ WedgeProfile profile_of(std::optional<Face> side, const std::vector<const Wedge*
     profile.kinds[kind_of(*wedge)] += 1.0 / static_cast<double>(wedges.size());
   }
   for (std::size_t f = 0; f < values.size(); ++f) {
-    std::ranges::sort(values[f]);
-    for (std::size_t q = 0; q < kProfileQuantiles && !values[f].empty(); ++q) {
-      const double at = static_cast<double>(values[f].size() - 1) * static_cast<double>(q + 1) /
-                        static_cast<double>(kProfileQuantiles + 1);
-      const auto low = static_cast<std::size_t>(at);
-      const std::size_t high = std::min(low + 1, values[f].size() - 1);
-      const double part = at - static_cast<double>(low);
-      profile.quantiles[f][q] = (1 - part) * values[f][low] + part * values[f][high];
-    }
+    profile.known[f] = static_cast<int>(values[f].size());
+    profile.quantiles[f] = quantiles_of(std::move(values[f]));
   }
   return profile;
+}
+
+std::vector<WedgeProfile> profiles_of(const std::vector<Wedge>& wedges, AnglesOf angles) {
+  std::vector<WedgeProfile> profiles;
+  std::vector<const Wedge*> all;
+  for (const Wedge& wedge : wedges) {
+    all.push_back(&wedge);
+  }
+  profiles.push_back(profile_of(std::nullopt, all, angles));
+  for (int side = 0; side < kFaceCount; ++side) {
+    std::vector<const Wedge*> some;
+    std::ranges::copy_if(all, std::back_inserter(some), [&](const Wedge* w) {
+      return w->place.side && *w->place.side == static_cast<Face>(side);
+    });
+    if (!some.empty()) {
+      profiles.push_back(profile_of(static_cast<Face>(side), some, angles));
+    }
+  }
+  return profiles;
 }
 
 }  // namespace
@@ -104,29 +139,28 @@ std::size_t kind_of(const Wedge& wedge) {
 }
 
 std::vector<WedgeProfile> make_profiles(const std::vector<Wedge>& wedges) {
-  std::vector<WedgeProfile> profiles;
-  std::vector<const Wedge*> all;
-  for (const Wedge& wedge : wedges) {
-    all.push_back(&wedge);
-  }
-  profiles.push_back(profile_of(std::nullopt, all));
-  for (int side = 0; side < kFaceCount; ++side) {
-    std::vector<const Wedge*> some;
-    std::ranges::copy_if(all, std::back_inserter(some), [&](const Wedge* w) {
-      return w->place.side && *w->place.side == static_cast<Face>(side);
-    });
-    if (!some.empty()) {
-      profiles.push_back(profile_of(static_cast<Face>(side), some));
-    }
-  }
-  return profiles;
+  return profiles_of(wedges, AnglesOf::kAll);
 }
 
-std::vector<float> comparable(const WedgeProfile& profile) {
+std::vector<WedgeProfile> make_read_profiles(const std::vector<Wedge>& wedges) {
+  return profiles_of(wedges, AnglesOf::kReadable);
+}
+
+std::vector<float> comparable(const std::vector<Wedge>& wedges) {
+  std::array<std::vector<double>, kWedgeFeatures.size()> values;
+  for (const Wedge& wedge : wedges) {
+    const std::vector<float> row = comparable(wedge);
+    for (std::size_t f = 0; f < values.size(); ++f) {
+      values[f].push_back(row[f]);
+    }
+  }
   std::vector<float> out;
-  for (std::size_t f = 0; f < profile.quantiles.size(); ++f) {
-    for (const double value : profile.quantiles[f]) {
-      out.push_back(static_cast<float>(on_scale(f, value) / static_cast<double>(kProfileQuantiles)));
+  for (const std::vector<double>& of_feature : values) {
+    if (of_feature.empty()) {
+      return {};
+    }
+    for (const double value : quantiles_of(of_feature)) {
+      out.push_back(static_cast<float>(value / static_cast<double>(kProfileQuantiles)));
     }
   }
   return out;

@@ -28,9 +28,16 @@ using WedgeFeatures = std::array<double, kWedgeFeatures.size()>;
 /// where there are none.
 [[nodiscard]] std::vector<WedgeProfile> make_profiles(const std::vector<Wedge>& wedges);
 
-/// Quantiles of all features on their comparable scales: the L1 distance of two is the mean distance that the
-/// one's wedges would have to be shifted by to be distributed as the other's (Wasserstein), summed over the
-/// features.
-[[nodiscard]] std::vector<float> comparable(const WedgeProfile& profile);
+/// The same for a page to be read: slopes, opening and face angles are those of wedges of which they can be
+/// read (docs/scholars/measurements.md), intact kLeastIntact and more and worn to no more than
+/// kMostRoundness; what is not known of a wedge speaks against it.
+[[nodiscard]] std::vector<WedgeProfile> make_read_profiles(const std::vector<Wedge>& wedges);
+inline constexpr double kLeastIntact = 0.8;
+inline constexpr double kMostRoundness = 0.02;
+
+/// Quantiles of all features of these wedges on their comparable scales, of comparable() of each: the L1
+/// distance of two is the mean distance that the one's wedges would have to be shifted by to be distributed
+/// as the other's (Wasserstein), summed over the features. Empty of no wedges.
+[[nodiscard]] std::vector<float> comparable(const std::vector<Wedge>& wedges);
 
 }  // namespace dubsar

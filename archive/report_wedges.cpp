@@ -36,11 +36,14 @@ constexpr std::array<FeatureRow, 6> kRows = {{
     {"third_opening_deg", "Opening at the third edge, °", 0},
 }};
 
+std::size_t feature_of(const FeatureRow& row) {
+  return static_cast<std::size_t>(std::ranges::find(kWedgeFeatures, row.feature) - kWedgeFeatures.begin());
+}
+
 std::string spread(const WedgeProfile& profile, const FeatureRow& row) {
-  const auto at =
-      static_cast<std::size_t>(std::ranges::find(kWedgeFeatures, row.feature) - kWedgeFeatures.begin());
+  const std::size_t at = feature_of(row);
   const auto& quantiles = profile.quantiles[at];
-  if (profile.count < kLeastForQuantiles || !(quantiles[kMedian] > 0)) {
+  if (profile.known[at] < kLeastForQuantiles) {
     return "–";
   }
   return fixed(quantiles[kMedian], row.decimals) + " (" + fixed(quantiles[kTenth], row.decimals) + " to " +
@@ -66,7 +69,14 @@ std::string profile_table(const std::vector<WedgeProfile>& profiles) {
   }
   std::string rows =
       row_of(profiles, "Wedges", [](const WedgeProfile& profile) { return std::to_string(profile.count); });
+  bool are_lengths = true;
   for (const FeatureRow& row : kRows) {
+    if (are_lengths && feature_of(row) >= kWedgeLengths) {
+      are_lengths = false;
+      rows += row_of(profiles, "Wedges that angles are read at", [&](const WedgeProfile& profile) {
+        return std::to_string(profile.known[feature_of(row)]);
+      });
+    }
     rows += row_of(profiles, std::string(row.words),
                    [&](const WedgeProfile& profile) { return spread(profile, row); });
   }
@@ -77,7 +87,8 @@ std::string profile_table(const std::vector<WedgeProfile>& profiles) {
   }
   std::string aside =
       "Median, in brackets the tenth and the nine-tenths of the wedges: of fewer than five none are told. "
-      "Every wedge by itself, with what it is uncertain by, stands in the file.";
+      "Slope and openings are read at wedges of which 0.8 or more is left (intact) and that are not worn "
+      "(roundness at most 0.02). Every wedge by itself, with what it is uncertain by, stands in the file.";
   if (beyond_mesh > 0) {
     aside += " The mesh ends before " +
              counted(beyond_mesh, "edge does: its length is", "edges do: their lengths are") + " in no row.";

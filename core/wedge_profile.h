@@ -27,6 +27,7 @@ inline constexpr std::array<std::string_view, 11> kWedgeFeatures = {
     "second_face_angle_deg",
     "third_face_angle_deg",
 };
+inline constexpr std::size_t kWedgeLengths = 4;  ///< so many of them, the first, are lengths; others angles
 inline constexpr std::size_t kProfileQuantiles = 9;  ///< 0.1, 0.2 … 0.9
 
 /// Kinds of wedges by the direction of their tail (facts.md, after Gottstein), besides the Winkelhaken.
@@ -39,6 +40,8 @@ struct WedgeProfile {
   int count = 0;
   int beyond_mesh = 0;  ///< inner edges before whose end the mesh ends: their lengths are in no quantile
   std::array<std::array<double, kProfileQuantiles>, kWedgeFeatures.size()> quantiles{};
+  /// Of how many wedges the quantiles of each feature are. Not in files: it follows from their wedges.
+  std::array<int, kWedgeFeatures.size()> known{};
   std::array<double, kWedgeKinds.size()> kinds{};  ///< shares
 };
 

@@ -15,7 +15,7 @@ namespace dubsar {
 
 namespace {
 
-constexpr std::string_view kMagic = "DUBSIDX3";
+constexpr std::string_view kMagic = "DUBSIDX4";
 constexpr std::size_t kHeadBytes = 16;  // magic, digest of all that follows
 constexpr std::uint32_t kMostColumns = 4096;
 

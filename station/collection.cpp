@@ -23,7 +23,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int kFewestWedges = 5;
 /// The wedge that is searched by may be in the collection more than once, and so may the tablet.
 constexpr std::size_t kCopies = 16;
 
@@ -63,20 +62,6 @@ bool is_of_another_kind(const fs::path& path) {
   return !wedges || (wedges->items().empty() && root.failed());
 }
 
-/// The file's own, unless wedges were put in or taken out since, or its lengths are those of a version that
-/// counted what the mesh ends before.
-WedgeProfile profile_of(const WedgeFile& file) {
-  const auto own = std::ranges::find_if(file.profiles, [](const WedgeProfile& p) { return !p.side; });
-  int beyond = 0;
-  for (const Wedge& wedge : file.wedges) {
-    beyond += static_cast<int>(std::ranges::count(wedge.beyond_mesh, true));
-  }
-  return own != file.profiles.end() && own->count == static_cast<int>(file.wedges.size()) &&
-                 own->beyond_mesh == beyond
-             ? *own
-             : make_profiles(file.wedges).front();
-}
-
 /// `name`: of the file below the folder.
 IndexedTablet read_tablet(const fs::path& path, const std::string& name, std::chrono::milliseconds settled) {
   IndexedTablet tablet;
@@ -97,7 +82,7 @@ IndexedTablet read_tablet(const fs::path& path, const std::string& name, std::ch
     tablet.features.insert(tablet.features.end(), row.begin(), row.end());
   }
   if (file->wedges.size() >= kFewestWedges) {
-    tablet.profile = comparable(profile_of(*file));
+    tablet.profile = comparable(file->wedges);
   }
   const auto finite = [](float value) { return std::isfinite(value); };
   if (!std::ranges::all_of(tablet.features, finite) || !std::ranges::all_of(tablet.profile, finite)) {
@@ -138,7 +123,7 @@ Result<WedgeFile> read_compared_wedges(const fs::path& path) {
     for (Wedge& wedge : file->wedges) {
       wedge.exit_points_mm = wedge.exit_points_surface_mm;
     }
-    file->profiles.clear();
+    file->profiles.clear();  // of the other lengths
   }
   return file;
 }
@@ -151,6 +136,7 @@ Result<Collection> Collection::open(const fs::path& folder, std::chrono::millise
   const std::vector<fs::path>& paths = found->paths;
   Collection collection;
   collection.unread_ = std::move(found->unread);
+  collection.lost_sessions_ = std::move(found->lost_sessions);
   const fs::path index_path = folder / kSearchIndexName;
   SearchIndex kept = read_index(index_path, &collection.remark_);
   std::map<std::string, IndexedTablet*> known;
@@ -246,7 +232,7 @@ std::vector<SimilarTablet> Collection::similar_tablets(const WedgeFile& tablet, 
     itself.push_back(wedge_digest(wedge));
   }
   std::vector<SimilarTablet> similar;
-  for (const FeatureMatch& match : tablets_->nearest(comparable(profile_of(tablet)), count + kCopies)) {
+  for (const FeatureMatch& match : tablets_->nearest(comparable(tablet.wedges), count + kCopies)) {
     const IndexedTablet& other = index_.tablets[tablet_rows_[match.index]];
     if (other.digests != itself && similar.size() < count) {
       similar.push_back({other.name, static_cast<int>(other.ids.size()),

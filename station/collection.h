@@ -3,6 +3,7 @@
 #pragma once
 
 #include <chrono>
+#include <cstddef>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -32,6 +33,9 @@ struct SimilarTablet {
 /// What IndexedTablet::complaint says of a .json that never was a wedges.json: no more than that.
 inline constexpr std::string_view kNoWedgesJson = "no wedges.json";
 
+/// Tablets with fewer are not compared: their deciles are those of a few impressions.
+inline constexpr std::size_t kFewestWedges = 5;
+
 /// A wedges.json as it is compared: lengths to where the edges meet the surface, whichever definition was
 /// chosen for it. Else the choice would tell two hands apart.
 [[nodiscard]] Result<WedgeFile> read_compared_wedges(const std::filesystem::path& path);
@@ -54,11 +58,13 @@ class Collection {
   [[nodiscard]] const std::string& remark() const { return remark_; }  ///< empty when there is none
   /// What was left out because it cannot be read.
   [[nodiscard]] const std::vector<UnreadPlace>& unread() const { return unread_; }
+  /// As AnalysedFiles has them.
+  [[nodiscard]] const std::vector<std::string>& lost_sessions() const { return lost_sessions_; }
 
   /// The wedges most like this one; the wedge itself, where it is in the collection, is left out.
   [[nodiscard]] std::vector<SimilarWedge> similar_wedges(const Wedge& wedge, std::size_t count) const;
   /// The tablets whose wedges are distributed most alike; one with just the same wedges is left out, tablets
-  /// with fewer than five wedges too.
+  /// with fewer than kFewestWedges too. None for a tablet without wedges.
   [[nodiscard]] std::vector<SimilarTablet> similar_tablets(const WedgeFile& tablet, std::size_t count) const;
 
  private:
@@ -76,6 +82,7 @@ class Collection {
   std::size_t read_anew_ = 0;
   std::string remark_;
   std::vector<UnreadPlace> unread_;
+  std::vector<std::string> lost_sessions_;
 };
 
 }  // namespace dubsar

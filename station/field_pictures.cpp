@@ -6,6 +6,7 @@
 
 #include <string>
 
+#include "analysis/body_fields.h"
 #include "analysis/curvature.h"
 #include "analysis/field_colours.h"
 #include "archive/png.h"
@@ -92,7 +93,7 @@ Status write_invariants(const fs::path& mat, const fs::path& picture_folder, con
                         const RigidTransform& tablet_from_model, const SurfaceFields& fields,
                         const IntegralInvariantOptions& options, const JobContext& job) {
   const IntegralInvariants invariants =
-      integral_invariants(mesh, outlook_of(mesh, fields), fields.mean_edge_mm, options, job);
+      invariants_of_bodies(mesh, fields.body_of, outlook_of(mesh, fields), fields.mean_edge_mm, options, job);
   if (job.cancelled()) {
     return fail(ErrorKind::kCancelled, "the analysis was stopped");
   }

@@ -9,9 +9,9 @@
 #include <limits>
 #include <utility>
 
+#include "acquisition/session_store.h"
+#include "analysis/body_fields.h"
 #include "analysis/curvature.h"
-#include "analysis/integral_invariants.h"
-#include "analysis/openness.h"
 #include "analysis/tablet_size.h"
 #include "analysis/vertex_geometry.h"
 #include "core/tablet_frame.h"
@@ -26,6 +26,7 @@
 #include "station/place_outside.h"
 #include "station/section_file.h"
 #include "station/selection_store.h"
+#include "station/tablet_label.h"
 #include "station/wedges_beside.h"
 
 namespace dubsar {
@@ -231,7 +232,9 @@ void MeshViewing::open(const fs::path& file) {
     }
     const RigidTransform tablet_from_model = tablet_frame(*read);
     std::optional<Error> odd = odd_numbers(*read, file);
-    odd = odd ? odd : inside_out(*read, file.filename().string());
+    if (const std::optional<Error> turned = turned_outwards(&*read, file.filename().string())) {
+      odd = odd ? odd : turned;
+    }
     label_ = read_mesh_label(file);
     take_mesh(std::make_shared<const Mesh>(std::move(*read)), tablet_from_model, file.filename().string());
     if (odd) {
@@ -251,11 +254,22 @@ void MeshViewing::open(const fs::path& file) {
 void MeshViewing::show(std::shared_ptr<const Mesh> mesh, const RigidTransform& tablet_from_model,
                        const fs::path& wedges_file) {
   ask([this, mesh = std::move(mesh), tablet_from_model, wedges_file] {
-    label_ = {};
     take_mesh(mesh, tablet_from_model, {});
+    take_label_of_session(wedges_file.parent_path().parent_path());
     take_corrections(wedges_file, true);
     take_selections(wedges_file.parent_path() / "selections.json");
   });
+}
+
+void MeshViewing::take_label_of_session(const fs::path& session) {
+  label_ = {};
+  const Result<SessionStore> store = SessionStore::open(session, SessionStore::Access::kReadOnly);
+  Result<FileLabel> label = store ? tablet_label(*store) : Result<FileLabel>(std::unexpected(store.error()));
+  if (!label) {
+    complain(label.error());
+    return;
+  }
+  label_ = *std::move(label);
 }
 
 void MeshViewing::want(MeshField field) {
@@ -352,7 +366,7 @@ void MeshViewing::work_out(MeshField field) {
   const VertexGeometry geometry = make_vertex_geometry(*shown, graph);
   job_->progress(field == MeshField::kOpenness ? "ambient occlusion" : "surface fields", 0.1);
   if (field == MeshField::kOpenness) {
-    take_field(field, vertex_openness(*shown, geometry, {}, *job_));
+    take_field(field, openness_of_bodies(*shown, geometry, {}, *job_));
   } else if (field == MeshField::kMeanCurvature) {
     take_field(field, vertex_curvature(*shown, graph, geometry).mean_per_mm);
   }
@@ -369,8 +383,9 @@ void MeshViewing::work_out_everything(bool with_invariant) {
   if (with_invariant) {
     job_->progress("integral invariants", 0.9);
     take_field(MeshField::kInvariant,
-               strongest_response(integral_invariants(*shown, outlook_of(*shown, analysis_->fields),
-                                                      analysis_->fields.mean_edge_mm, {}, *job_)));
+               strongest_response(invariants_of_bodies(*shown, analysis_->fields.body_of,
+                                                       outlook_of(*shown, analysis_->fields),
+                                                       analysis_->fields.mean_edge_mm, {}, *job_)));
   }
   take_wedges(analysis_->set.wedges);
 }

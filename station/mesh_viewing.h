@@ -63,7 +63,8 @@ class MeshViewing {
   /// Reads the mesh, and the wedges beside it (wedges_beside()). No more: a field takes all cores, and who
   /// looks at a mesh wants to see it first.
   void open(const std::filesystem::path& file);
-  /// Looks at a mesh that is there already.
+  /// Looks at the mesh of a session, which is there already: what is kept of it says what the session says of
+  /// its tablet.
   void show(std::shared_ptr<const Mesh> mesh, const RigidTransform& tablet_from_model,
             const std::filesystem::path& wedges_file);
   void want(MeshField field);  ///< works it out unless it is there
@@ -101,6 +102,7 @@ class MeshViewing {
   void run();
   void take_mesh(std::shared_ptr<const Mesh> mesh, const RigidTransform& tablet_from_model,
                  const std::string& name);
+  void take_label_of_session(const std::filesystem::path& session);
   void take_selections(const std::filesystem::path& file);
   void take_corrections(const std::filesystem::path& wedges_file, bool in_session);
   void make_corrections(std::vector<WedgeCorrection> corrections, bool must_make_last);
@@ -119,7 +121,7 @@ class MeshViewing {
   mutable std::mutex mutex_;  ///< of what follows
   ViewedMesh state_;
   // Of the worker alone.
-  FileLabel label_;                     ///< of the file that was opened, for what is written of its mesh
+  FileLabel label_;  ///< of the file that was opened, or of the session, for what is written of its mesh
   std::unique_ptr<Analysis> analysis_;  ///< of the mesh, once it was asked for
   AnalysisOptions analysis_options_;
   std::filesystem::path wedges_file_;

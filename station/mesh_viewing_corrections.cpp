@@ -5,6 +5,7 @@
 
 #include "formats/corrections_json.h"
 #include "formats/wedges_json.h"
+#include "station/analysis_asked.h"
 #include "station/correction_region.h"
 #include "station/mesh_viewing.h"
 #include "station/place_outside.h"
@@ -24,9 +25,11 @@ void MeshViewing::take_corrections(const fs::path& wedges_file, bool in_session)
   Result<CorrectionFile> said = read_corrections(corrections_file);
   if (!said) {
     complain(said.error());
-  } else {
-    analysis_options_.wedges.corrections = std::move(said->corrections);
   }
+  AnalysisAsked asked;
+  asked.out = wedges_file_.string();
+  take_known_options(asked, [](const char*) { return false; });
+  analysis_options_ = options_of(asked, said ? std::move(said->corrections) : std::vector<WedgeCorrection>{});
   const std::size_t count = analysis_options_.wedges.corrections.size();
   {
     const std::scoped_lock lock(mutex_);
@@ -41,7 +44,7 @@ void MeshViewing::take_corrections(const fs::path& wedges_file, bool in_session)
     complain(known.error());
     return;
   }
-  analysis_options_.wedges.exits = known->exits;
+  analysis_options_.wedges.exits = known->exits;  // what it holds, whatever a stamp of before says
   const bool since =
       count > 0 && fs::last_write_time(corrections_file, error) > fs::last_write_time(wedges_file_, error);
   take_wedges(std::move(known->wedges));

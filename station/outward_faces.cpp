@@ -28,11 +28,18 @@ std::optional<Error> inside_out(const Mesh& mesh, const std::string& where) {
                consistent ? kMend : kMendFacesFirst};
 }
 
-void face_outwards(Mesh* mesh, const std::string& where) {
-  if (std::optional<Error> fault = inside_out(*mesh, where)) {
+std::optional<Error> turned_outwards(Mesh* mesh, const std::string& where) {
+  std::optional<Error> fault = inside_out(*mesh, where);
+  if (fault) {
     fault->what += ", and are turned over for this";
-    log_warning(fault->line());
     turn_over(mesh);
+  }
+  return fault;
+}
+
+void face_outwards(Mesh* mesh, const std::string& where) {
+  if (const std::optional<Error> fault = turned_outwards(mesh, where)) {
+    log_warning(fault->line());
   }
 }
 

@@ -2,8 +2,8 @@
 // Copyright The Dubsar developers
 #include "station/package_features.h"
 
-#include "analysis/integral_invariants.h"
-#include "analysis/openness.h"
+#include "analysis/body_fields.h"
+#include "analysis/mesh_bodies.h"
 #include "analysis/outlook.h"
 #include "analysis/vertex_geometry.h"
 #include "analysis/vertex_graph.h"
@@ -21,16 +21,19 @@ constexpr double kRadiusMm = 1.0;
 Result<PackageFields> package_fields(const Mesh& mesh, const JobContext& job) {
   PackageFields fields;
   double mean_edge_mm = 0;
+  std::vector<std::uint8_t> body_of;
   {
     const VertexGraph graph = make_vertex_graph(mesh);
     const VertexGeometry geometry = make_vertex_geometry(mesh, graph);
     mean_edge_mm = geometry.mean_edge_mm;
-    fields.openness = vertex_openness(mesh, geometry, {}, job);
+    body_of = find_bodies(mesh, geometry).of;
+    fields.openness = openness_of_bodies(mesh, geometry, {}, job);
   }
   if (!job.cancelled()) {
-    const IntegralInvariants invariants =
-        integral_invariants(mesh, mean_outlook(mesh, kRadiusMm), mean_edge_mm, {.radius_mm = kRadiusMm}, job);
-    fields.invariants = strongest_response(invariants);
+    const std::vector<Eigen::Vector3f> outlook =
+        of_each_body(mesh, body_of, [](const Mesh& body) { return mean_outlook(body, kRadiusMm); });
+    fields.invariants = strongest_response(
+        invariants_of_bodies(mesh, body_of, outlook, mean_edge_mm, {.radius_mm = kRadiusMm}, job));
   }
   if (job.cancelled()) {
     return fail(ErrorKind::kCancelled, "stopped");

@@ -6,6 +6,7 @@
 
 #include <limits>
 
+#include "analysis/wedge_features.h"
 #include "analysis/wedges.h"
 #include "archive/wedge_drawing.h"
 #include "core/log.h"
@@ -180,7 +181,8 @@ std::optional<WedgeFile> stored_wedges(const SessionStore& store, const Mesh& me
 }
 
 SessionWedges counts_of(const WedgeFile& file, fs::path json) {
-  return {std::move(json), file.wedges.size(), file.rejected.size(), file.text_certainty, file.profiles};
+  return {std::move(json), file.wedges.size(), file.rejected.size(), file.text_certainty,
+          make_read_profiles(file.wedges)};
 }
 
 std::string wedge_sentence(const SessionWedges& wedges, const std::string& where) {

@@ -22,7 +22,7 @@ struct SessionWedges {
   std::size_t count = 0;
   std::size_t rejected = 0;
   double text_certainty = 0;
-  std::vector<WedgeProfile> profiles;  ///< as in the file
+  std::vector<WedgeProfile> profiles;  ///< make_read_profiles()
 };
 
 /// What the scholar has said of the session's wedges in the viewer; a file that cannot be read is passed over

@@ -26,6 +26,7 @@
 #include "station/field_pictures.h"
 #include "station/outward_faces.h"
 #include "station/place_outside.h"
+#include "station/same_tablet.h"
 #include "station/tablet_label.h"
 
 namespace dubsar {
@@ -137,18 +138,6 @@ void tell(const AnalyzeArguments& arguments, const WedgeFile& file, double took_
   }
 }
 
-AnalysisOptions options_of(const AnalyzeArguments& arguments, const CorrectionFile& said) {
-  AnalysisOptions options;
-  options.fields = arguments.fields;
-  if (arguments.uniform_weights) {
-    options.fields.reconstruction.other_weight = 1;
-  }
-  options.wedges.exits = arguments.exits == "extent" ? ExitDefinition::kExtent : ExitDefinition::kSurface;
-  options.wedges.classical_watershed = arguments.classical;
-  options.wedges.corrections = said.corrections;
-  return options;
-}
-
 /// Everything that was written, for the stamp.
 std::vector<std::filesystem::path> outputs_of(const AnalyzeArguments& arguments,
                                               const std::vector<std::filesystem::path>& drawings) {
@@ -171,13 +160,13 @@ std::vector<std::filesystem::path> outputs_of(const AnalyzeArguments& arguments,
   return out;
 }
 
-/// A mesh that was stitched or cleaned anew may have another name: then they are meant. So may a tablet that
-/// is analysed to where another one's wedges lay.
+/// A mesh that was stitched or cleaned anew may have another name: then they are meant, and nothing is said
+/// where that is known. So may a tablet that is analysed to where another one's wedges lay.
 void warn_of_others(const AnalyzeArguments& arguments, const CorrectionFile& said,
                     const std::filesystem::path& file) {
   const std::filesystem::path mesh = std::filesystem::path(arguments.in).filename();
   const std::filesystem::path of = std::filesystem::path(said.mesh).filename();
-  if (!said.corrections.empty() && !of.empty() && of != mesh) {
+  if (!said.corrections.empty() && !of.empty() && of != mesh && !is_of_the_tablet_of(arguments.in, file)) {
     log_warning(Error{ErrorKind::kBadInput,
                       "these corrections were made on " + of.string() + " and are made on " + mesh.string(),
                       file.string(), "if that is another tablet, give its wedges a file of their own"}
@@ -269,7 +258,7 @@ Result<int> analyze(const AnalyzeArguments& arguments, CommandContext& context) 
   Mesh& mesh = read->mesh;
   face_outwards(&mesh, arguments.in);
   const double reading_s = seconds_since(start);
-  const AnalysisOptions options = options_of(arguments, *said);
+  const AnalysisOptions options = options_of(arguments, said->corrections);
   Result<Analysis> analysis = analyze_mesh(mesh, options, context.job);
   if (!analysis) {
     Error error = analysis.error();

@@ -3,33 +3,21 @@
 #pragma once
 
 #include <filesystem>
-#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "analysis/surface_fields.h"
 #include "core/wedge_correction.h"
 #include "formats/corrections_json.h"
 #include "formats/file_label.h"
+#include "station/analysis_asked.h"
 #include "station/command/command.h"
 
 namespace dubsar {
 
 /// What `dubsar analyze` is asked for.
-struct AnalyzeArguments {
+struct AnalyzeArguments : AnalysisAsked {
   std::string in;
-  std::string out;
-  std::string mesh_out;
-  std::string exits = "surface";
-  std::string unit;
-  std::string pictures;
-  std::string invariants;
-  double radius_mm = 1.0;
-  SurfaceFieldOptions fields;
-  bool uniform_weights = false;
-  std::string svg;
-  bool classical = false;
   bool again = false;
   std::string corrections;                                ///< file; empty: the one beside the output
   std::optional<std::vector<WedgeCorrection>> corrected;  ///< in the place of what that file says
@@ -47,11 +35,6 @@ void add_analyze_options(CLI::App& verb, AnalyzeArguments& arguments);
 /// session says in which the mesh lies.
 [[nodiscard]] std::string parameters_of(const AnalyzeArguments& arguments, const CorrectionFile& said,
                                         const std::optional<FileLabel>& of_session);
-
-/// Fills what the operator has not `said` ("--exit") in with what the wedges in arguments.out were found
-/// with, as the stamp beside them tells: else a correction would measure them by other rules, and leave
-/// drawings behind that show what was deleted. Without a stamp the file's own word on the exits.
-void take_known_options(AnalyzeArguments& arguments, const std::function<bool(const char*)>& said);
 
 /// Where the corrections lie that the analysis goes by.
 [[nodiscard]] std::filesystem::path corrections_of(const AnalyzeArguments& arguments);

@@ -45,6 +45,12 @@ Result<int> search(const SearchArguments& arguments, CommandContext& context) {
     log_warning(
         fmt::format("left out: {} in {} cannot be read: {}", place.name, arguments.folder, place.reason));
   }
+  for (const std::string& session : collection->lost_sessions()) {
+    log_warning(
+        fmt::format("left out: {} in {} is a session without its session.sqlite, and has no wedges; dubsar "
+                    "verify --repair makes the one anew, dubsar analyze the others",
+                    session, arguments.folder));
+  }
   std::size_t of_another_kind = 0;
   for (const IndexedTablet& file : collection->files()) {
     if (file.complaint == kNoWedgesJson) {
@@ -76,9 +82,12 @@ Result<int> search(const SearchArguments& arguments, CommandContext& context) {
       }
     }
   } else {
-    if (like->wedges.empty()) {
-      return fail(ErrorKind::kUsage, "it has no wedges to search by", arguments.like,
-                  "choose another tablet");
+    if (like->wedges.size() < kFewestWedges) {
+      return fail(
+          ErrorKind::kUsage,
+          fmt::format("it has {} wedges to search by, and tablets are compared from {} on",
+                      like->wedges.empty() ? "no" : std::to_string(like->wedges.size()), kFewestWedges),
+          arguments.like, "choose another tablet, or search by one of its wedges with --wedge");
     }
     json["tablets"] = nlohmann::ordered_json::array();
     for (const SimilarTablet& s : collection->similar_tablets(*like, count)) {

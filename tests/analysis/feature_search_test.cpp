@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "analysis/wedge_features.h"
 #include "core/random.h"
@@ -116,13 +117,10 @@ TEST(WedgeFeatures, DoNotDependOnWhereAWedgePoints) {
 }
 
 TEST(WedgeProfile, OfOneHandIsNearerThanThatOfAnother) {
-  const auto profile = [](const std::vector<Wedge>& wedges) {
-    return comparable(make_profiles(wedges).front());
-  };
-  const FeatureSearch search(
-      {profile(hand(1.8, 0.5, 60, 1)), profile(hand(1.2, 0.5, 60, 2)), profile(hand(1.2, 0.8, 60, 3))},
-      FeatureDistance::kL1);
-  const auto found = search.nearest(profile(hand(1.2, 0.5, 25, 9)), 3);
+  const FeatureSearch search({comparable(hand(1.8, 0.5, 60, 1)), comparable(hand(1.2, 0.5, 60, 2)),
+                              comparable(hand(1.2, 0.8, 60, 3))},
+                             FeatureDistance::kL1);
+  const auto found = search.nearest(comparable(hand(1.2, 0.5, 25, 9)), 3);
   ASSERT_EQ(found.size(), 3U);
   EXPECT_EQ(found[0].index, 1U);
   EXPECT_GT(found[1].distance, 3 * found[0].distance);
@@ -159,6 +157,63 @@ TEST(WedgeProfile, LeavesOutLengthsThatTheMeshEndsBefore) {
   Wedge risen = wedges[0];
   risen.exit_points_mm[0] = risen.depth_point_mm + Eigen::Vector3d(0.0, 0.0, risen.depth_mm / std::sin(0.3));
   EXPECT_NEAR(comparable(wedges.back())[1], comparable(risen)[1], 1e-5) << "as long as its slope says";
+  EXPECT_EQ(profile.known[0], 10);
+  EXPECT_EQ(profile.known[1], 9);
+}
+
+/// Of which no tail is on the mesh, as on a fragment; as long as depth and slope say all the same.
+TEST(WedgeProfile, OfTabletsWithoutOneKnownLengthIsComparedByDepthAndSlope) {
+  const auto broken = [](double slope_rad, std::uint64_t seed) {
+    std::vector<Wedge> wedges = hand(1.2, 0.5, 12, seed);
+    for (Wedge& wedge : wedges) {
+      wedge.depth_mm = 0.5;
+      wedge.beyond_mesh[0] = true;
+      wedge.edge_slopes_rad[0] = slope_rad;
+    }
+    return wedges;
+  };
+  const auto mean_distance = [](const std::vector<Wedge>& a, const std::vector<Wedge>& b) {
+    const std::vector<float> one = comparable(a);
+    const std::vector<float> other = comparable(b);
+    double sum = 0;
+    for (std::size_t k = 0; k < one.size(); ++k) {
+      sum += std::abs(one[k] - other[k]);
+    }
+    return sum / kWedgeFeatures.size();
+  };
+  std::vector<Wedge> whole = hand(1.2, 0.5, 12, 4);
+  for (Wedge& wedge : whole) {
+    wedge.depth_mm = 0.5;
+    wedge.edge_slopes_rad[0] = 0.24;  // as its exit, 2 mm away, says
+  }
+  EXPECT_LT(mean_distance(broken(0.24, 1), whole), 0.5) << "one hand";
+  EXPECT_GT(mean_distance(broken(0.12, 1), broken(0.24, 2)), 0.3) << "twice as long";
+}
+
+TEST(WedgeProfile, ToBeReadHasAnglesOfWedgesThatAreWholeAndSharp) {
+  std::vector<Wedge> wedges = hand(1.2, 0.5, 12, 1);
+  for (std::size_t i = 0; i < wedges.size(); ++i) {
+    wedges[i].opening_angles_rad.fill(rad_from_deg(90));
+  }
+  wedges[0].intact = 0.79;
+  wedges[1].roundness = 0.021;
+  wedges[2].roundness = std::numeric_limits<double>::quiet_NaN();
+  for (std::size_t i = 0; i < 3; ++i) {
+    wedges[i].opening_angles_rad.fill(rad_from_deg(150));
+  }
+  wedges[3].intact = kLeastIntact;
+  wedges[3].roundness = kMostRoundness;
+  const std::vector<WedgeProfile> profiles = make_read_profiles(wedges);
+  ASSERT_EQ(profiles.size(), 2U);
+  for (const WedgeProfile& profile : profiles) {
+    EXPECT_EQ(profile.count, 12);
+    for (std::size_t f = 0; f < kWedgeFeatures.size(); ++f) {
+      EXPECT_EQ(profile.known[f], f < kWedgeLengths ? 12 : 9) << kWedgeFeatures[f];
+    }
+    EXPECT_NEAR(profile.quantiles[5][8], 90, 1e-9);
+  }
+  EXPECT_GT(make_profiles(wedges).front().quantiles[5][8], 90) << "wedges.json has all";
+  EXPECT_EQ(make_profiles(wedges).front().known[5], 12);
 }
 
 }  // namespace

@@ -5,6 +5,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "archive/report_sections.h"
 
 namespace dubsar {
@@ -30,6 +32,7 @@ class ReportWedges : public ::testing::Test {
         out.quantiles[f][q] = first + static_cast<double>(f) + 0.01 * (static_cast<double>(q) - 4.0);
       }
     }
+    out.known.fill(count);
     out.kinds = {0.25, 0.5, 0, 0, 0.25, 0};
     return out;
   }
@@ -56,9 +59,25 @@ TEST_F(ReportWedges, LengthsThatAreInNoRowAreCountedOnce) {
   WedgeProfile side = profile(Face::kLeft, 9, 0.5);
   side.beyond_mesh = 2;
   all.quantiles[1].fill(0);  // no length is known
+  all.known[1] = 0;
   const std::string html = section({all, side});
   EXPECT_THAT(html, HasSubstr("The mesh ends before 2 edges do: their lengths are in no row."));
   EXPECT_THAT(html, HasSubstr("<td>Directional edge, mm</td><td>–</td>"));
+}
+
+TEST_F(ReportWedges, WhatFewerThanFiveSayIsToldOfNoFeature) {
+  WedgeProfile all = profile(std::nullopt, 6, 0.5);
+  all.beyond_mesh = 2;
+  all.known[1] = 4;
+  WedgeProfile side = profile(Face::kObverse, 6, 0.5);
+  side.beyond_mesh = 1;
+  side.known[1] = 5;
+  std::fill(side.known.begin() + kWedgeLengths, side.known.end(), 3);
+  const std::string html = section({all, side});
+  EXPECT_THAT(html, HasSubstr("<td>Depth, mm</td><td>0.50 (0.46 to 0.54)</td><td>0.50 (0.46 to 0.54)</td>"));
+  EXPECT_THAT(html, HasSubstr("<td>Directional edge, mm</td><td>–</td><td>1.50 (1.46 to 1.54)</td>"));
+  EXPECT_THAT(html, HasSubstr("<td>Wedges that angles are read at</td><td>6</td><td>3</td>"));
+  EXPECT_THAT(html, HasSubstr("<td>Opening at it, °</td><td>6 (5 to 6)</td><td>–</td>"));
 }
 
 TEST_F(ReportWedges, ThereIsNoTableOfNothing) {

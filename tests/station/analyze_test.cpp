@@ -69,9 +69,9 @@ TEST(SearchCommand, FindsTheLikeAndLeavesOutTheSame) {
   const test::TemporaryFolder folder;
   const auto at = [&](const char* name) { return (folder.path() / name).string(); };
   // Three "tablets" of one shape of wedge each; b and c are nearly alike.
-  const auto write = [&](const char* name, double depth, double length) {
+  const auto write = [&](const char* name, double depth, double length, int count = 12) {
     WedgeFile file;
-    for (int i = 0; i < 12; ++i) {
+    for (int i = 0; i < count; ++i) {
       Wedge w;
       w.id = i;
       w.depth_point_mm = {3.0 * i, 0, -depth};
@@ -102,6 +102,15 @@ TEST(SearchCommand, FindsTheLikeAndLeavesOutTheSame) {
             2);
   EXPECT_EQ(run_command({"search", at("nowhere"), "--like", at("b.json")}).status, 2);
   EXPECT_EQ(run_command({"search", folder.path().string(), "--like", at("note.json")}).status, 2);
+  // Four wedges say nothing of a hand, as four of another tablet do; one of them is looked for.
+  write("few.json", 0.5, 2.0, 4);
+  std::filesystem::remove(at("torn.json"));
+  const Outcome few = run_command({"search", folder.path().string(), "--like", at("few.json")});
+  EXPECT_EQ(few.status, 2);
+  ASSERT_EQ(few.complaints().size(), 1U) << few.err;
+  EXPECT_THAT(few.err, HasSubstr("it has 4 wedges to search by, and tablets are compared from 5 on"));
+  EXPECT_EQ(run_command({"search", folder.path().string(), "--like", at("few.json"), "--wedge", "2"}).status,
+            0);
 }
 
 TEST(AnalyzeCommand, SaysPlainlyThatThereAreNone) {

@@ -9,10 +9,12 @@
 #include <sys/stat.h>
 
 #include <chrono>
+#include <cmath>
 #include <fstream>
 #include <sstream>
 #include <thread>
 
+#include "analysis/wedge_features.h"
 #include "tests/support/temporary_folder.h"
 
 namespace dubsar {
@@ -187,28 +189,40 @@ TEST_F(CollectionTest, WhatNeverWasAWedgesJsonIsToldApartFromADamagedOne) {
   }
 }
 
-TEST_F(CollectionTest, TheFilesOwnProfileIsUsedWhileItFits) {
-  WedgeFile file = tablet_of(0.5, 2.0, 12);
-  WedgeProfile profile;
-  profile.count = 12;
-  for (auto& quantiles : profile.quantiles) {
-    quantiles.fill(1.0);
+TEST_F(CollectionTest, LengthsBeyondTheMeshAreThoseThatDepthAndSlopeSay) {
+  const auto broken = [](double length_mm) {
+    WedgeFile file = tablet_of(0.5, 2.0, 12);
+    for (Wedge& wedge : file.wedges) {
+      wedge.beyond_mesh[0] = true;
+      wedge.edge_slopes_rad[0] = std::asin(0.5 / length_mm);
+    }
+    file.profiles = make_profiles(file.wedges);  // which know no such length
+    return file;
+  };
+  WedgeFile whole = tablet_of(0.5, 2.0, 12);
+  for (Wedge& wedge : whole.wedges) {
+    wedge.edge_slopes_rad[0] = std::asin(0.25);
   }
-  file.profiles = {profile};
-  put("b.json", file);
-  const auto own = open();
-  ASSERT_TRUE(own);
-  WedgeFile like = tablet_of(3, 3, 12);
-  like.profiles = {profile};
-  ASSERT_FALSE(own->similar_tablets(like, 1).empty());
-  EXPECT_EQ(own->similar_tablets(like, 1)[0].tablet, "b.json");
-  EXPECT_EQ(own->similar_tablets(like, 1)[0].distance, 0);
-  // A wedge was taken out by hand: what the profile says is no longer true.
-  file.wedges.pop_back();
-  put("b.json", file);
-  const auto made = open();
-  ASSERT_TRUE(made);
-  EXPECT_GT(made->similar_tablets(like, 1)[0].distance, 0);
+  put("a.json", broken(2.0));
+  put("b.json", broken(6.0));
+  put("x/c.json", whole);
+  const auto collection = open();
+  ASSERT_TRUE(collection);
+  WedgeFile like = broken(2.02);
+  like.wedges[0].depth_point_mm.y() = 0.01;  // no copy of a.json
+  const std::vector<SimilarTablet> found = collection->similar_tablets(like, 10);
+  ASSERT_EQ(found.size(), 3U);
+  EXPECT_EQ(found[0].tablet, "a.json");
+  EXPECT_EQ(found[1].tablet, "x/c.json");
+  EXPECT_LT(found[1].distance, 0.1);
+  EXPECT_EQ(found[2].tablet, "b.json");
+  EXPECT_GT(found[2].distance, 0.4);
+}
+
+TEST_F(CollectionTest, OfATabletWithoutWedgesNoneIsLike) {
+  const auto collection = open();
+  ASSERT_TRUE(collection);
+  EXPECT_TRUE(collection->similar_tablets(WedgeFile(), 10).empty());
 }
 
 TEST_F(CollectionTest, MeasuresBeyondAllBoundsAreToldApart) {

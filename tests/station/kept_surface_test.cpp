@@ -53,7 +53,7 @@ TEST(KeptSurface, ALostDrawingIsOfTheWedgesAsTheyAre) {
   const auto bytes = [&](const char* name) { return read_whole_file(store.folder() / name).value(); };
   const std::string wedges = bytes("analysis/wedges.json");
   JobContext job;
-  const Status made = make_wedges_anew(store, {"analysis/obverse.svg"}, job);
+  const Result<bool> made = make_wedges_anew(store, {"analysis/obverse.svg"}, job);
   ASSERT_TRUE(made) << made.error().line();
   EXPECT_THAT(bytes("analysis/obverse.svg"), ::testing::HasSubstr("41"));
   EXPECT_EQ(bytes("analysis/reverse.svg"), "as it was");
@@ -79,9 +79,10 @@ TEST(KeptSurface, OfWedgesThatAreKeptPagesTellWhatTheyToldWhenTheyWereMeasured) 
   file.text_from_model = RigidTransform();
   file.text_certainty = 0.7;
   file.wedges.resize(6);
-  WedgeProfile& profile = file.profiles.emplace_back();
-  profile.count = 6;
-  profile.quantiles[0].fill(0.25);
+  for (Wedge& wedge : file.wedges) {
+    wedge.depth_mm = 0.25;
+  }
+  file.wedges.front().intact = 0.5;
   keep(store, mesh, file);
   PageFacts facts;
   tell_kept_wedges(facts, store, mesh, {});
@@ -92,6 +93,8 @@ TEST(KeptSurface, OfWedgesThatAreKeptPagesTellWhatTheyToldWhenTheyWereMeasured) 
   EXPECT_THAT(facts.wedges, Not(HasSubstr("direction of writing"))) << "it shows";
   ASSERT_EQ(facts.wedge_profiles.size(), 1U);
   EXPECT_EQ(facts.wedge_profiles.front().quantiles[0][4], 0.25);
+  EXPECT_EQ(facts.wedge_profiles.front().known[0], 6);
+  EXPECT_EQ(facts.wedge_profiles.front().known[5], 5) << "angles of those that are whole";
 
   file.text_certainty = 0;
   keep(store, mesh, file);

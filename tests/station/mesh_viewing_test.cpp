@@ -13,16 +13,22 @@
 #include <csignal>
 #include <fstream>
 #include <mutex>
+#include <nlohmann/json.hpp>
 #include <thread>
 
+#include "acquisition/session_store.h"
 #include "core/inside_out.h"
 #include "formats/atomic_file.h"
 #include "formats/corrections_json.h"
+#include "formats/file_label_reader.h"
 #include "formats/mesh_io.h"
 #include "formats/selections_json.h"
 #include "formats/wedges_json.h"
 #include "sim/tablet.h"
 #include "station/analysis.h"
+#include "station/analysis_asked.h"
+#include "station/done_stamp.h"
+#include "station/tablet_record.h"
 #include "tests/support/temporary_folder.h"
 
 namespace dubsar {
@@ -261,14 +267,105 @@ TEST_F(MeshViewingTest, NothingIsLaidIntoAPackage) {
   EXPECT_EQ(std::distance(fs::directory_iterator(mesh_.parent_path()), {}), 1) << "the mesh alone";
 }
 
-TEST_F(MeshViewingTest, AMeshThatIsInsideOutIsShownWithAWord) {
+TEST_F(MeshViewingTest, ACorrectionMeasuresAsTheWedgesWereMeasured) {
+  const JobContext job;
+  AnalysisAsked asked;
+  asked.fields.reliability_iterations = 6;
+  asked.fields.free_surface.least_openness = 0.8;
+  asked.uniform_weights = true;
+  const Result<Analysis> analysis = analyze_mesh(*tablet_, options_of(asked, {}), job);
+  ASSERT_TRUE(analysis);
+  const fs::path file = mesh_.parent_path() / "tablet.wedges.json";
+  const WedgeFile before = wedge_file("tablet.ply", {}, *analysis);
+  ASSERT_GT(before.wedges.size(), 1U);
+  ASSERT_TRUE(write_wedges(file, before));
+  ASSERT_NE((before.wedges[0].depth_point_mm - wedges_mm_[0]).norm(), 0) << "else nothing is shown here";
+  const nlohmann::json parameters{{"exit", "surface"},
+                                  {"unit", ""},
+                                  {"free_openness", 0.8},
+                                  {"free_concave_per_mm", asked.fields.free_surface.most_concave_per_mm},
+                                  {"equalize", false},
+                                  {"fault_reach", 6},
+                                  {"uniform_weights", true},
+                                  {"classical_watershed", false},
+                                  {"mesh_out", ""},
+                                  {"pictures", ""},
+                                  {"svg", ""},
+                                  {"invariants", ""}};
+  const DoneStamp stamp{"Dubsar", "analyze", parameters.dump(), {}, {}};
+  ASSERT_TRUE(write_file_atomically(stamp_beside(file), done_stamp_to_json(stamp)));
+  Viewer viewer(mesh_);
+  viewer.remove_wedge(before.wedges[0].depth_point_mm);
+  ASSERT_FALSE(viewer.state().error) << viewer.state().error->line();
+  const Result<WedgeFile> after = read_wedges(file);
+  const Result<WedgeFile> as_read = parse_wedges(wedges_to_json(before), "");
+  ASSERT_EQ(after->wedges.size() + 1, before.wedges.size());
+  for (std::size_t i = 0; i < after->wedges.size(); ++i) {
+    EXPECT_EQ(after->wedges[i].id, as_read->wedges[i + 1].id);
+    EXPECT_EQ(after->wedges[i].depth_point_mm, as_read->wedges[i + 1].depth_point_mm);
+    EXPECT_EQ(after->wedges[i].volume_mm3, as_read->wedges[i + 1].volume_mm3);
+  }
+}
+
+TEST_F(MeshViewingTest, WhatIsKeptOfASessionsMeshSaysWhatTheSessionSays) {
+  const fs::path session = folder_.path() / "session";
+  {
+    SessionStore store = SessionStore::open_or_create(session).value();
+    TabletRecord record;
+    record.museum_number = "BM 15285";
+    record.rights = "CC BY 4.0";
+    ASSERT_TRUE(keep_tablet_record(store, record));
+    RangeGrid made_up;
+    made_up.rows = 2;
+    made_up.cols = 2;
+    made_up.x = {0, 0.1F, 0, 0.1F};
+    made_up.y = {0, 0, 0.1F, 0.1F};
+    made_up.z = {0, 0, 0, 0};
+    made_up.valid = {1, 1, 1, 1};
+    made_up.spacing_mm = 0.1;
+    made_up.device = "sim";
+    ASSERT_TRUE(store.add_grid(made_up));
+  }
+  MeshViewing viewing([] {});
+  viewing.show(std::make_shared<const Mesh>(*tablet_), {}, session / "analysis" / "wedges.json");
+  settle(viewing);
+  ASSERT_FALSE(viewing.state().error) << viewing.state().error->line();
+  const fs::path part = folder_.path() / "part.ply";
+  viewing.write_part({"all", MeshElement::kFace, {{0, 3}}}, part);
+  settle(viewing);
+  const FileLabel label = read_mesh_label(part);
+  EXPECT_TRUE(label.simulated);
+  EXPECT_THAT(label.name, HasSubstr("BM 15285"));
+  EXPECT_THAT(label.rights, HasSubstr("CC BY 4.0"));
+  // What is looked at next is another one's.
+  viewing.open(mesh_);
+  settle(viewing);
+  viewing.write_part({"all", MeshElement::kFace, {{0, 3}}}, part);
+  settle(viewing);
+  EXPECT_TRUE(read_mesh_label(part).empty());
+}
+
+TEST_F(MeshViewingTest, AMeshThatIsInsideOutIsTurnedOverWithAWord) {
   Mesh turned = *tablet_;
   turn_over(&turned);
   ASSERT_TRUE(write_mesh(mesh_, turned));
   Viewer one(mesh_);
   ASSERT_TRUE(one.state().error);
   EXPECT_THAT(one.state().error->line(), testing::HasSubstr("inside out"));
-  EXPECT_TRUE(one.state().mesh);
+  EXPECT_THAT(one.state().error->line(), testing::HasSubstr("turned over"));
+  ASSERT_TRUE(one.state().mesh);
+  EXPECT_EQ(one.state().mesh->faces, tablet_->faces);
+  // So that a cut is of the side that is seen.
+  MeshViewing viewing([] {});
+  viewing.open(mesh_);
+  settle(viewing);
+  viewing.cut({-4, 0, 4}, {4, 0, 4}, Eigen::Vector3d::UnitZ());
+  settle(viewing);
+  const Result<CrossSection> as_it_was =
+      cross_section(*tablet_, {-4, 0, 4}, {4, 0, 4}, Eigen::Vector3d::UnitZ());
+  ASSERT_TRUE(as_it_was);
+  ASSERT_TRUE(viewing.state().section);
+  EXPECT_NEAR(viewing.state().section->lowest_mm, as_it_was->lowest_mm, 1e-6);
 }
 
 TEST_F(MeshViewingTest, TwoWhoSelectOnOneMeshLoseNothing) {

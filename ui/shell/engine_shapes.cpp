@@ -209,6 +209,7 @@ constexpr EnginePhrase kShapes[] = {
      "wegschneiden, was nicht die Tafel ist, oder den Abstand angeben"},
     // what is done with a mesh in the viewer
     {"it is inside out: its faces look inwards", "es ist umgestülpt: seine Flächen sehen nach innen"},
+    {", and are turned over for this", ", und werden hierfür umgewendet"},
     {"some of its faces run against their neighbours: mend these first, then look again",
      "einige ihrer Flächen laufen ihren Nachbarn entgegen: zuerst diese berichtigen, dann wieder nachsehen"},
     {"mend the file with dubsar mesh convert --turn-over, and look whether its signs are mirrored",
