@@ -78,6 +78,7 @@ class GuiScope {
     });
     ImGui_ImplGlfw_InitForOpenGL(window, true);  // its own callback calls that one
     type_by_stand_ins(window);
+    ImGui::GetIO().KeyMap[ImGuiKey_Tab] = -1;  // KeyFocus goes by it, not only to lines that are typed into
     ImGui_ImplOpenGL3_Init("#version 410 core");
   }
   ~GuiScope() {
@@ -274,6 +275,7 @@ class StationWindow {
         (ImGui::IsKeyPressed(GLFW_KEY_F12, false) || ImGui::IsKeyPressed(GLFW_KEY_PAUSE, false))) {
       session_->halt();
     }
+    ui_.keys.begin(!pair_ && !looks_);
     const ImVec2 size = ImGui::GetIO().DisplaySize;
     bool unfinished = false;
     if (pair_) {
@@ -294,6 +296,7 @@ class StationWindow {
         looks_ = true;
       }
     }
+    ui_.keys.end();
     if (operator_) {
       if (const std::string title = operator_->title(); title != title_) {
         title_ = title;

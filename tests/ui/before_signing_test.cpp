@@ -59,6 +59,18 @@ TEST(BeforeSigning, ASideOfWhichMuchIsExcusedGetsNoTick) {
   EXPECT_FALSE(top.excused);
 }
 
+/// Of what is seen of it, what is excused included.
+TEST(BeforeSigning, MuchIsMoreThanOneInAHundred) {
+  for (const double mm2 : {0.9, 1.1}) {
+    LiveState state = with_excused(mm2);
+    state.seen_mm2[kReverse] = 100 - mm2;
+    const FaceState reverse = face_state(state, Face::kReverse, Language::kEnglish);
+    EXPECT_EQ(reverse.whole, mm2 < 1) << mm2;
+    EXPECT_EQ(reverse.excused, mm2 > 1) << mm2;
+    EXPECT_EQ(statement_of(state, true, Language::kEnglish).tone, mm2 > 1 ? Tone::kAsk : Tone::kGood) << mm2;
+  }
+}
+
 TEST(BeforeSigning, AConclusiveTabletWithExcusedPlacesIsNotSaidToLackNothing) {
   const Statement much = statement_of(with_excused(110.4), true, Language::kEnglish);
   EXPECT_EQ(much.headline, "Conclusive, but 110.8 mm² are excused: read why, then sign");
@@ -149,6 +161,19 @@ TEST(BeforeSigning, OneScanThatIsNotJudgedIsNotSeveral) {
   state.scans.emplace_back();
   EXPECT_EQ(statement_of(state, true, Language::kEnglish).headline,
             "A scan is not judged yet: Finish judges it");
+}
+
+TEST(BeforeSigning, ScansThatTakeNoPartInTheModelAreNamed) {
+  LiveState state;
+  for (const PoseStatus status : {PoseStatus::kRegistered, PoseStatus::kUnsure, PoseStatus::kFailed,
+                                  PoseStatus::kUnsure, PoseStatus::kFailed}) {
+    state.scans.push_back(with_scan(status).scans.front());
+    state.scans.back().id = static_cast<int>(state.scans.size()) - 1;
+  }
+  state.scans[3].dropped = true;
+  state.scans[4].damaged = true;
+  state.scans.emplace_back();  // not judged yet
+  EXPECT_EQ(scans_without_place(state), "1, 2");
 }
 
 TEST(WindowTitle, SaysWhichTabletWhichSessionAndWhichScanner) {

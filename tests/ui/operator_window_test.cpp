@@ -28,11 +28,11 @@ class OperatorWindow : public ::testing::Test {
     }
   }
   [[nodiscard]] std::string in(const std::string& name) const { return (folder_.path() / name).string(); }
-  [[nodiscard]] Outcome play(const std::string& script) const {
+  [[nodiscard]] Outcome play(const std::string& script, const char* width = "1366") const {
     std::ofstream(in("a.script")) << script;
     return run_command({"station", "--session", in("session"), "--device",
                         "sim:?seed=1&size=20x16x8&spacing=0.25&noise=0.02", "--script", in("a.script"),
-                        "--width", "1366", "--height", "768"});
+                        "--width", width, "--height", "768"});
   }
 
   test::TemporaryFolder folder_;
@@ -137,6 +137,35 @@ quit
   EXPECT_LT(red_pixels(blue), 20);
   EXPECT_LT(mean_of(dark)[1], 90);
   EXPECT_GT(mean_of(test::read_png(in("light.png")))[1], 150);
+}
+
+/// In the language with the longer words.
+TEST_F(OperatorWindow, NothingIsCutOffInANarrowWindow) {
+  const Outcome outcome = play(R"(wait idle
+click settings
+click german
+key escape
+pause 0.2
+click calibration
+click page-calibrate
+wait stage-mirror
+pause 0.2
+expect whole.stage-linear
+expect whole.stage-turntable
+expect whole.stage-mirror
+key escape
+pause 0.2
+key space
+wait waiting-turn
+wait model-shown
+pause 0.2
+expect model-whole
+key 3
+expect model-whole
+quit
+)",
+                               "1024");
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
 }
 
 /// On a small display, in the largest letters, in the language with the longer words.

@@ -43,6 +43,12 @@ std::string scans_of_lost_records(const LiveState& state) {
   return numbers_of(state, [](const LiveScan& scan) { return scan.record_lost && !scan.dropped; });
 }
 
+std::string scans_without_place(const LiveState& state) {
+  return numbers_of(state, [](const LiveScan& scan) {
+    return !scan.dropped && !scan.damaged && scan.pose && scan.pose->status != PoseStatus::kRegistered;
+  });
+}
+
 bool is_damaged(const LiveState& state) {
   return state.damage_found || std::ranges::any_of(state.scans, &LiveScan::damaged);
 }

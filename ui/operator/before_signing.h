@@ -17,6 +17,8 @@ namespace dubsar::ui {
 [[nodiscard]] std::string damaged_scans_taken_out(const LiveState& state);
 /// Likewise those that stand and may have been taken out, since records of them are lost.
 [[nodiscard]] std::string scans_of_lost_records(const LiveState& state);
+/// Likewise those that stand and take no part in the model: nobody knows for certain where they lie.
+[[nodiscard]] std::string scans_without_place(const LiveState& state);
 
 /// Something of the session is known to be damaged, whether it takes part or not.
 [[nodiscard]] bool is_damaged(const LiveState& state);

@@ -40,19 +40,6 @@ bool begin_box(UiContext& ui, const char* title, const char* id, bool& open, flo
   return true;
 }
 
-/// The keys and the pedal that have opened a box do what it is for when they are pressed again. In a line
-/// that is typed into, end goes to its end.
-bool confirms() {
-  return any_pressed({GLFW_KEY_ENTER, GLFW_KEY_KP_ENTER, GLFW_KEY_F11}) ||
-         (!ImGui::GetIO().WantTextInput && any_pressed({GLFW_KEY_END}));
-}
-
-/// The button that a box is for.
-bool confirmed(UiContext& ui, const char* name, Text text, bool enough) {
-  const bool by_key = enough && confirms() && !ImGui::IsWindowAppearing();
-  return plain_button(ui, name, ui.text(text), enough) || by_key;
-}
-
 /// Ends a box with its last button.
 void end_box(UiContext& ui, const char* close_name) {
   ImGui::SameLine();
@@ -93,7 +80,7 @@ void OperatorScreen::draw_settings(UiContext& ui) {
     p.font_px = std::min(kLargestFontPx, p.font_px + 2);
   }
   ImGui::Separator();
-  if (plain_button(ui, "close-settings", ui.text(Text::kClose))) {
+  if (confirmed(ui, "close-settings", Text::kClose)) {
     ImGui::CloseCurrentPopup();
   }
   ImGui::EndPopup();
@@ -135,7 +122,10 @@ void OperatorScreen::draw_tablet(UiContext& ui) {
   coloured_text(state_.record_kept ? ui.colours.faint : ui.colours.amber,
                 ui.text(state_.record_kept ? Text::kKept : Text::kRecordNotKept));
   ImGui::PopFont();
-  const bool close = plain_button(ui, "close-tablet", ui.text(Text::kClose), cdli_good);
+  // Enter in a line leaves the line, as what reads a label into it says it too.
+  const bool typing = ImGui::GetIO().WantTextInput;
+  const bool close = typing ? plain_button(ui, "close-tablet", ui.text(Text::kClose), cdli_good)
+                            : confirmed(ui, "close-tablet", Text::kClose, cdli_good);
   ImGui::SameLine();
   const bool next = plain_button(ui, "next-tablet", fmt::format("{}  N", ui.text(Text::kNextTablet)).c_str(),
                                  cdli_good && may_leave()) ||
@@ -203,7 +193,7 @@ void OperatorScreen::draw_excused(UiContext& ui) {
     coloured_text(is_much_excused(state_) ? ui.colours.amber : ui.colours.text, line.c_str());
   }
   ImGui::EndChild();
-  ui.target("excused");
+  ui.target("excused", Reach::kNone);
   ImGui::PopFont();
 }
 
@@ -228,7 +218,7 @@ void OperatorScreen::draw_signing(UiContext& ui) {
   const bool enough = says(sign_name_) && (!reason.wanted || says(sign_incomplete_));
   // The first line that lacks has the cursor: whoever signs needs no mouse. So too when enter was too early.
   const bool appears = ImGui::IsWindowAppearing();
-  const bool too_early = !appears && !enough && confirms();
+  const bool too_early = !appears && !enough && confirms(ui);
   sign_too_early_ = !enough && (too_early || (sign_too_early_ && !appears));
   bool asks = appears || too_early;
   const auto line = [&](const char* name, Text label, std::string& value) {

@@ -134,17 +134,23 @@ void CalibrationDialog::draw_verify(UiContext& ui, const LiveState& state) {
 
 /// What the stage does, and how warm the room is: of all pictures.
 void CalibrationDialog::draw_stage(UiContext& ui) {
+  const float end = ImGui::GetCursorScreenPos().x + ImGui::GetContentRegionAvail().x;
   const auto offer = [&](const char* name, Text text, MotionKind kind) {
+    const ImGuiStyle& style = ImGui::GetStyle();
+    const float wide =
+        ImGui::GetFrameHeight() + style.ItemInnerSpacing.x + ImGui::CalcTextSize(ui.text(text)).x;
+    // Beside the one before where it fits, else below.
+    if (kind != MotionKind::kLinear && ImGui::GetItemRectMax().x + style.ItemSpacing.x + wide <= end) {
+      ImGui::SameLine();
+    }
     if (ImGui::RadioButton(ui.text(text), motion_ == kind)) {
       motion_ = kind;
     }
     ui.target(name);
-    ImGui::SameLine();
   };
   offer("stage-linear", Text::kStageLinear, MotionKind::kLinear);
   offer("stage-turntable", Text::kStageTurntable, MotionKind::kTurntable);
   offer("stage-mirror", Text::kStageMirror, MotionKind::kGalvanometer);
-  ImGui::NewLine();
   short_text(ui, "temperature", temperature_, ui.px(5));
   ImGui::SameLine();
   ImGui::TextUnformatted(ui.text(Text::kTemperature));

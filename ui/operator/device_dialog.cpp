@@ -68,8 +68,10 @@ void DeviceDialog::draw_choices(UiContext& ui) {
     ImDrawList* draw = ImGui::GetWindowDrawList();
     draw->AddText(nullptr, 0, {at.x + pad, at.y + pad}, packed(ui.colours.text), title.c_str(), nullptr,
                   room - 2 * pad);
-    draw->AddText(small, small->FontSize, {at.x + pad, at.y + pad + above}, packed(ui.colours.faint),
-                  words.c_str(), nullptr, room - 2 * pad);
+    // Faint letters cannot be read on the blue of what is chosen.
+    draw->AddText(small, small->FontSize, {at.x + pad, at.y + pad + above},
+                  packed(is_chosen ? ui.colours.text : ui.colours.faint), words.c_str(), nullptr,
+                  room - 2 * pad);
     return hit;
   };
   const bool any = std::ranges::any_of(drivers_, [](const OfferedDriver& d) { return !d.found.empty(); });
@@ -164,7 +166,7 @@ std::optional<std::string> DeviceDialog::draw(UiContext& ui) {
     take(typed);
   }
   ui.facts.insert(fmt::format("address.{}", uri_));
-  if (plain_button(ui, "use-device", ui.text(Text::kUse), !uri_.empty())) {
+  if (confirmed(ui, "use-device", Text::kUse, !uri_.empty())) {
     out = uri_;
     ImGui::CloseCurrentPopup();
   }

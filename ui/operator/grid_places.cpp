@@ -61,7 +61,7 @@ ClickablePicture draw_clickable(UiContext& ui, const char* name, const RangeGrid
   ImGui::PushID(name);
   ImGui::InvisibleButton("##picture", out.drawn);
   ImGui::PopID();
-  ui.target(name);
+  ui.target(name, Reach::kNone);
   ImDrawList* draw = ImGui::GetWindowDrawList();
   const ImVec2 end = out.at({1, 1});
   draw->AddImage(picture_of(texture.id()), out.origin, end);

@@ -19,7 +19,7 @@ namespace dubsar::ui {
 
 namespace {
 
-constexpr float kModelAspect = 1.2F;  ///< the narrowest place for the model's picture
+constexpr float kModelAspect = 1.2F;  ///< that a model is fitted to, where its place is not narrower
 
 }  // namespace
 
@@ -66,7 +66,7 @@ void OperatorScreen::take_state(UiContext& ui) {
       camera_set_ = true;
     }
     model_box_mm_ = ready->whole->box_mm;
-    camera_.fit(model_box_mm_, kModelAspect);
+    fit_model();
     giving_back_ = give_back(std::move(ready));
   }
   draws_on_ = prepared_.arrives();
@@ -227,9 +227,14 @@ void OperatorScreen::open_next() {
 void OperatorScreen::look_at(Face face) {
   if (!model_.empty()) {
     camera_.eye_from_model = eye_towards(face, state_.tablet_from_model);
-    camera_.fit(model_box_mm_, kModelAspect);
+    fit_model();
     looked_at_ = face;
   }
+}
+
+void OperatorScreen::fit_model() {
+  camera_.fit(model_box_mm_, model_aspect_);
+  is_fitted_ = true;
 }
 
 void OperatorScreen::act(const Statement& statement, const UiContext& ui) {
@@ -248,7 +253,7 @@ void OperatorScreen::act(const Statement& statement, const UiContext& ui) {
     open_next();
   } else if (statement.may_undo && any_pressed({GLFW_KEY_BACKSPACE, GLFW_KEY_F10, GLFW_KEY_PAGE_UP})) {
     undo();
-  } else if (any_pressed({GLFW_KEY_ENTER, GLFW_KEY_KP_ENTER, GLFW_KEY_F11, GLFW_KEY_END})) {
+  } else if (any_pressed({GLFW_KEY_F11, GLFW_KEY_END}) || enter_pressed(ui)) {
     if (statement.may_sign) {
       open_signing(ui);
     } else if (statement.may_finish) {
@@ -292,7 +297,7 @@ void OperatorScreen::draw_model(UiContext& ui, ImVec2 size, bool asks_for_places
   ImGui::InvisibleButton("##model", size,
                          ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonMiddle);
   ImGui::SetItemAllowOverlap();
-  ui.target("model");
+  ui.target("model", Reach::kNone);
   ImDrawList* draw = ImGui::GetWindowDrawList();
   const ImVec2 end{origin.x + size.x, origin.y + size.y};
   draw->AddRectFilled(origin, end, packed(ui.colours.text, 0.06F), 6);
@@ -305,6 +310,12 @@ void OperatorScreen::draw_model(UiContext& ui, ImVec2 size, bool asks_for_places
       ui.facts.insert("simulated");
     }
   };
+  if (const float aspect = std::min(kModelAspect, size.x / size.y); aspect != model_aspect_) {
+    model_aspect_ = aspect;
+    if (is_fitted_) {
+      fit_model();
+    }
+  }
   if (model_.empty()) {
     say_simulated();
     const ImVec2 text = ImGui::CalcTextSize(ui.text(Text::kNoModelYet));
@@ -322,6 +333,7 @@ void OperatorScreen::draw_model(UiContext& ui, ImVec2 size, bool asks_for_places
   // before.
   const bool drags = ImGui::IsItemActive() && !ImGui::IsItemActivated();
   if (drags && (io.MouseDelta.x != 0 || io.MouseDelta.y != 0)) {
+    is_fitted_ = false;
     if (ImGui::IsMouseDown(ImGuiMouseButton_Middle) || io.KeyShift) {
       camera_.pan({io.MouseDelta.x, io.MouseDelta.y}, size.y);
     } else {
@@ -332,7 +344,13 @@ void OperatorScreen::draw_model(UiContext& ui, ImVec2 size, bool asks_for_places
   }
   if (ImGui::IsItemHovered() && io.MouseWheel != 0) {
     const Eigen::Vector2f at = part(io.MousePos);
+    is_fitted_ = false;
     camera_.zoom(std::pow(0.88F, io.MouseWheel), {at.x() * size.y / size.x, at.y()}, size.x / size.y);
+  }
+  OrbitCamera enough = camera_;
+  enough.fit(model_box_mm_, size.x / size.y);
+  if (camera_.half_height_mm >= enough.half_height_mm) {
+    ui.facts.insert("model-whole");
   }
   Look look;
   look.occlusion = false;

@@ -67,6 +67,7 @@ class OperatorScreen {
   // side_columns.cpp
   void draw_face(UiContext& ui, Face which, const FaceState& face, Text name);
   void draw_faces(UiContext& ui);
+  void draw_unplaced(UiContext& ui);
   void draw_session_line(UiContext& ui);
   void draw_left(UiContext& ui, ImVec2 size);
   void draw_model(UiContext& ui, ImVec2 size, bool asks_for_places);
@@ -85,6 +86,7 @@ class OperatorScreen {
   void draw_next(UiContext& ui);
   void act(const Statement& statement, const UiContext& ui);
   void look_at(Face face);
+  void fit_model();
   void open_pairs();
   void undo();
   void open_signing(const UiContext& ui);
@@ -98,6 +100,8 @@ class OperatorScreen {
   SurfaceView model_;
   OrbitCamera camera_;
   bool camera_set_ = false;
+  float model_aspect_ = 1;  ///< of the place that the model is fitted to
+  bool is_fitted_ = false;  ///< it was not turned, moved or brought nearer since
   Eigen::AlignedBox3f model_box_mm_;
   std::optional<Face> looked_at_;  ///< until the model is turned otherwise
   PreparedModel prepared_;

@@ -97,13 +97,15 @@ std::optional<HintScan> PairDialog::draw(UiContext& ui) {
   const ImVec2 picture{half.x - ui.px(1.2F), half.y - choices - 1.4F * ImGui::GetFrameHeightWithSpacing()};
   const bool expects_left = left_.places.size() <= right_.places.size();
   ImGui::BeginChild("left", half, true);
-  ImGui::TextUnformatted(filled(ui.text(Text::kInUnsure), unsure_.id).c_str());
+  const bool failed = unsure_.pose->status == PoseStatus::kFailed;
+  ImGui::TextUnformatted(
+      filled(ui.text(Text::kScanIs), unsure_.id, ui.text(failed ? Text::kFailed : Text::kUnsure)).c_str());
   ImGui::Dummy({1, choices - ImGui::GetStyle().ItemSpacing.y});
   draw_side(ui, "pair-left", unsure_, left_, expects_left, picture);
   ImGui::EndChild();
   ImGui::SameLine();
   ImGui::BeginChild("right", half, true);
-  ImGui::TextUnformatted(filled(ui.text(Text::kInOther), other.id).c_str());
+  ImGui::TextUnformatted(filled(ui.text(Text::kScanIs), other.id, ui.text(Text::kRegistered)).c_str());
   int chosen = other.id;
   if (one_of(ui, "pair-with", ids, chosen)) {
     choose(static_cast<std::size_t>(std::ranges::find(ids, chosen) - ids.begin()));
@@ -111,7 +113,7 @@ std::optional<HintScan> PairDialog::draw(UiContext& ui) {
   draw_side(ui, "pair-right", others_[other_], right_, !expects_left, picture);
   ImGui::EndChild();
   const std::size_t pairs = std::min(left_.points_mm.size(), right_.points_mm.size());
-  if (plain_button(ui, "pairs-done", ui.text(Text::kPairsDone), pairs > 0)) {
+  if (confirmed(ui, "pairs-done", Text::kPairsDone, pairs > 0)) {
     HintScan hint;
     hint.id = unsure_.id;
     hint.given.hint.on = others_[other_].id;

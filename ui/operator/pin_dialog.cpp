@@ -229,8 +229,7 @@ std::vector<LabelPins> PinDialog::draw(UiContext& ui) {
   draw_panes(ui, ImGui::GetFrameHeightWithSpacing() + ui.px(0.5F));
   const double diameter_mm = diameter_of(diameter_);
   std::vector<LabelPins> out;
-  if (plain_button(ui, "pins-done", ui.text(Text::kUseLabels),
-                   diameter_mm > 0 && (left_.changed || right_.changed))) {
+  if (confirmed(ui, "pins-done", Text::kUseLabels, diameter_mm > 0 && (left_.changed || right_.changed))) {
     out = said(diameter_mm);
     ImGui::CloseCurrentPopup();
   }

@@ -104,6 +104,20 @@ void OperatorScreen::draw_faces(UiContext& ui) {
   }
 }
 
+/// Whatever the statement asks for just then, and also of a session that is opened again.
+void OperatorScreen::draw_unplaced(UiContext& ui) {
+  const std::string scans = scans_without_place(state_);
+  if (scans.empty()) {
+    return;
+  }
+  const bool is_one = scans.find(',') == std::string::npos;
+  ImGui::PushFont(ui.fonts.small);
+  coloured_text(ui.colours.amber,
+                filled(ui.text(is_one ? Text::kUnplacedScan : Text::kUnplacedScans), scans).c_str());
+  ImGui::PopFont();
+  ui.target("unplaced", Reach::kNone);
+}
+
 /// "Session whole". The stored checklist knows how it was; damage and loss since then are worse.
 void OperatorScreen::draw_session_line(UiContext& ui) {
   std::string damaged = damaged_scans(state_);
@@ -151,6 +165,7 @@ void OperatorScreen::draw_left(UiContext& ui, ImVec2 size) {
       ImGui::PopFont();
     }
   }
+  draw_unplaced(ui);
   draw_session_line(ui);
   if (state_.checklist) {
     const Checklist& list = *state_.checklist;

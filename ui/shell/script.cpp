@@ -27,6 +27,11 @@ const std::map<std::string, int>& keys() {
                                                 {"backspace", GLFW_KEY_BACKSPACE},
                                                 {"escape", GLFW_KEY_ESCAPE},
                                                 {"tab", GLFW_KEY_TAB},
+                                                {"backtab", GLFW_KEY_TAB},
+                                                {"up", GLFW_KEY_UP},
+                                                {"down", GLFW_KEY_DOWN},
+                                                {"left", GLFW_KEY_LEFT},
+                                                {"right", GLFW_KEY_RIGHT},
                                                 {"f9", GLFW_KEY_F9},
                                                 {"f10", GLFW_KEY_F10},
                                                 {"f11", GLFW_KEY_F11},
@@ -190,6 +195,7 @@ void ScriptPlayer::inject(const UiContext& ui, double now_s) {
       const auto key = static_cast<std::size_t>(keys().at(step.name));
       io.KeysDown[key] = frame_ < 2;
       io.KeyCtrl = step.name == "selectall" && frame_ < 2;
+      io.KeyShift = step.name == "backtab" && frame_ < 2;
       if (++frame_ > 4) {
         go_on();
       }

@@ -2,6 +2,8 @@
 // Copyright The Dubsar developers
 #include "ui/shell/widgets.h"
 
+#include <GLFW/glfw3.h>
+
 #include <algorithm>
 
 #include "archive/seen_line.h"
@@ -22,9 +24,22 @@ int grow(ImGuiInputTextCallbackData* data) {
   return 0;
 }
 
+/// Over all else, in two colours of which one is seen on any ground.
+void draw_frame(const UiContext& ui, ImVec2 low, ImVec2 high) {
+  constexpr float kBeside = 3;
+  ImDrawList* draw = ImGui::GetForegroundDrawList();
+  const ImVec2 first = ImGui::GetWindowDrawList()->GetClipRectMin();
+  const ImVec2 last = ImGui::GetWindowDrawList()->GetClipRectMax();
+  const ImVec2 from{std::max(low.x, first.x) - kBeside, std::max(low.y, first.y) - kBeside};
+  const ImVec2 to{std::min(high.x, last.x) + kBeside, std::min(high.y, last.y) + kBeside};
+  const float rounding = ImGui::GetStyle().FrameRounding;
+  draw->AddRect(from, to, packed(ui.colours.panel), rounding, 0, 6);
+  draw->AddRect(from, to, packed(ui.colours.text), rounding, 0, 3);
+}
+
 }  // namespace
 
-void UiContext::target(const std::string& name) {
+bool UiContext::target(const std::string& name, Reach reach) {
   const ImVec2 low = ImGui::GetItemRectMin();
   const ImVec2 high = ImGui::GetItemRectMax();
   targets[name] = {low.x, low.y, high.x, high.y};
@@ -33,6 +48,12 @@ void UiContext::target(const std::string& name) {
   if (low.x >= first.x && low.y >= first.y && high.x <= last.x && high.y <= last.y) {
     facts.insert("whole." + name);
   }
+  const bool framed = keys.item(reach);
+  if (framed) {
+    facts.insert("framed." + name);
+    draw_frame(*this, low, high);
+  }
+  return framed;
 }
 
 ImU32 packed(const Eigen::Vector4f& c, float alpha) {
@@ -119,7 +140,7 @@ bool big_button(UiContext& ui, const char* name, const char* label, const char* 
 bool plain_button(UiContext& ui, const char* name, const char* label, bool enabled) {
   ImGui::BeginDisabled(!enabled);
   ImGui::PushID(name);
-  const bool pressed = ImGui::Button(label);
+  const bool pressed = ImGui::Button(fmt::format("{}###press", label).c_str());  // one button in any words
   ImGui::PopID();
   ImGui::EndDisabled();
   if (enabled) {
@@ -158,14 +179,14 @@ bool short_text(UiContext& ui, const char* name, std::string& value, float width
   if (changed) {
     value = one_line(signs_of(line.c_str()));
   }
-  ui.target(name);
+  ui.target(name, Reach::kTyped);
   ImGui::PopID();
   return changed;
 }
 
 bool tick(UiContext& ui, const char* name, const char* label, bool& value) {
   ImGui::PushID(name);
-  const bool changed = ImGui::Checkbox(label, &value);
+  const bool changed = ImGui::Checkbox(fmt::format("{}###tick", label).c_str(), &value);
   ImGui::PopID();
   ui.target(name);
   return changed;
@@ -189,6 +210,22 @@ bool begin_wide_box(UiContext& ui, const char* title, const char* id, bool& open
 
 bool any_pressed(std::initializer_list<int> keys) {
   return std::ranges::any_of(keys, [](int key) { return ImGui::IsKeyPressed(key, false); });
+}
+
+bool enter_pressed(const UiContext& ui) {
+  return !ui.keys.takes_enter() && any_pressed({GLFW_KEY_ENTER, GLFW_KEY_KP_ENTER});
+}
+
+bool confirms(const UiContext& ui) {
+  // A list that has dropped down is over the box: enter is not for what is below it.
+  return !ImGui::IsWindowAppearing() && ImGui::IsWindowFocused(ImGuiFocusedFlags_RootAndChildWindows) &&
+         (enter_pressed(ui) || any_pressed({GLFW_KEY_F11}) ||
+          (!ImGui::GetIO().WantTextInput && any_pressed({GLFW_KEY_END})));
+}
+
+bool confirmed(UiContext& ui, const char* name, Text text, bool enough) {
+  const bool by_key = enough && confirms(ui);
+  return plain_button(ui, name, ui.text(text), enough) || by_key;
 }
 
 void begin_asking(UiContext& ui) {

@@ -14,6 +14,7 @@
 
 #include "ui/shell/decimal_comma.h"
 #include "ui/shell/frame_watch.h"
+#include "ui/shell/key_focus.h"
 #include "ui/shell/theme.h"
 #include "ui/shell/time_left.h"
 
@@ -30,10 +31,12 @@ struct UiContext {
   bool still = false;                     ///< a script runs: nothing moves by itself
   double time_s = 0;
   FrameWatch watch;
+  KeyFocus keys;
 
   [[nodiscard]] const char* text(Text which) const { return text_of(which, preferences.wording()); }
-  /// Notes where the last item is, under a name for scripts, and whether nothing of it is cut off.
-  void target(const std::string& name);
+  /// Notes where the last item is, under a name for scripts, and whether nothing of it is cut off; keys reach
+  /// it. True where the frame of the keyboard is round it.
+  bool target(const std::string& name, Reach reach = Reach::kPressed);
   [[nodiscard]] float px(float fonts_high) const { return fonts_high * preferences.font_px; }
 };
 
@@ -63,6 +66,13 @@ bool tick(UiContext& ui, const char* name, const char* label, bool& value);
                                   ImVec2 of_window = {0.94F, 0.92F});
 /// One of these keys of GLFW went down.
 [[nodiscard]] bool any_pressed(std::initializer_list<int> keys);
+/// The enter key went down, and is not for what the frame of the keyboard is round.
+[[nodiscard]] bool enter_pressed(const UiContext& ui);
+/// The keys and the pedal that have opened a box do what it is for when they are pressed again. In a line
+/// that is typed into, end goes to its end.
+[[nodiscard]] bool confirms(const UiContext& ui);
+/// The button that a box is for: those keys press it too.
+bool confirmed(UiContext& ui, const char* name, Text text, bool enough = true);
 /// To be said at the beginning of every box that is open: keys go to it alone, and escape shuts it.
 void begin_asking(UiContext& ui);
 /// One of several numbers, in as many rows as they take; true when another was chosen.

@@ -146,7 +146,7 @@ void PairScreen::draw_pane(UiContext& ui, Pane& pane, const char* name, ImVec2 s
   ImGui::InvisibleButton("##surface", size,
                          ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonMiddle |
                              ImGuiButtonFlags_MouseButtonRight);
-  ui.target(name);
+  ui.target(name, Reach::kNone);
   ImDrawList* draw = ImGui::GetWindowDrawList();
   draw->AddRectFilled(origin, end, packed(ui.colours.text, 0.05F), 6);
   std::string words = pane.state.name;

@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright The Dubsar developers
 // What stands beside the surface: views, light, colours, tools, facts, and the table of wedges.
+#include <GLFW/glfw3.h>
+
 #include <algorithm>
 #include <array>
 #include <cfloat>
 
+#include "core/wedge_length.h"
 #include "ui/shell/face_texts.h"
 #include "ui/viewer/viewer_screen.h"
 
@@ -36,12 +39,20 @@ std::string side_words(const UiContext& ui, const std::optional<Face>& side) {
   return side ? fmt::format("{} ", ui.text(kShortFaceTexts[static_cast<std::size_t>(*side)])) : std::string();
 }
 
-/// How much of something, from 0 to 3.
-void part_slider(const UiContext& ui, Text text, float& value) {
+/// How much of something, from 0 to 3; the keys left and right change it by a tenth.
+void part_slider(UiContext& ui, const char* name, Text text, float& value) {
   constexpr float kMost = 3;
+  constexpr float kStep = 0.1F;
   // ImGui writes its numbers with a point: the word for it is given instead.
   const std::string word = decimal(static_cast<double>(value), 1, ui.preferences.language);
+  ImGui::SetNextItemWidth(ui.px(5));
   ImGui::SliderFloat(ui.text(text), &value, 0, kMost, word.c_str());
+  if (ui.target(name, Reach::kSlid)) {
+    const float by = (ImGui::IsKeyPressed(GLFW_KEY_RIGHT, false) ? kStep : 0) -
+                     (ImGui::IsKeyPressed(GLFW_KEY_LEFT, false) ? kStep : 0);
+    value = by == 0 ? value : std::clamp(value + by, 0.0F, kMost);
+  }
+  ui.facts.insert(fmt::format("{}={:.1f}", name, value));
 }
 
 /// By the order of kWedgeFeatures.
@@ -59,12 +70,8 @@ void ViewerScreen::draw_light(UiContext& ui) {
   tick(ui, "shadows", ui.text(Text::kShadows), look_.shadows);
   tick(ui, "occlusion", ui.text(Text::kOcclusion), look_.occlusion);
   tick(ui, "flat", ui.text(Text::kFlat), look_.flat);
-  ImGui::SetNextItemWidth(ui.px(5));
-  part_slider(ui, Text::kRadiance, look_.radiance);
-  ui.target("radiance");
-  ImGui::SetNextItemWidth(ui.px(5));
-  part_slider(ui, Text::kDepthShading, look_.depth_shading);
-  ui.target("depth-shading");
+  part_slider(ui, "radiance", Text::kRadiance, look_.radiance);
+  part_slider(ui, "depth-shading", Text::kDepthShading, look_.depth_shading);
   ImGui::PopFont();
 }
 
@@ -336,8 +343,7 @@ void ViewerScreen::draw_wedge_table(UiContext& ui, ImVec2 size, bool with_length
         if (with_length) {
           ImGui::TableNextColumn();
           const auto leading = static_cast<std::size_t>(std::clamp(wedge.directional_edge, 0, 2));
-          // Where the mesh ends before the edge does it is a guess, as in the drawings.
-          const std::string mark = wedge.beyond_mesh[leading] ? "~" : "";
+          const std::string mark = length_is_guess(wedge, leading) ? "~" : "";  // as in the drawings
           ImGui::TextUnformatted(
               (mark + decimal(wedge.edge_lengths_mm[leading], 2, ui.preferences.language)).c_str());
         }

@@ -173,7 +173,7 @@ void ViewerScreen::draw_surface(UiContext& ui, ImVec2 size) {
   ImGui::InvisibleButton("##surface", size,
                          ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonMiddle |
                              ImGuiButtonFlags_MouseButtonRight);
-  ui.target("surface");
+  ui.target("surface", Reach::kNone);
   ImDrawList* draw = ImGui::GetWindowDrawList();
   draw->AddRectFilled(origin, end, packed(ui.colours.text, 0.05F), 6);
   if (aspect_ != size.x / size.y) {
