@@ -59,6 +59,9 @@ std::string json_from_pose(const ScanPose& pose) {
     out["warning"] = pose.warning;
   }
   out["locked"] = pose.locked;
+  if (pose.group_apart >= 0) {
+    out["group_apart"] = pose.group_apart;
+  }
   if (pose.covariance) {
     std::vector<double> values;
     for (int row = 0; row < kTwist; ++row) {
@@ -88,6 +91,9 @@ Result<ScanPose> pose_from_json(int id, std::string_view text) {
   pose.sigma_mm = number_of(in, "sigma_mm");
   pose.overlap = number_of(in, "overlap");
   pose.locked = in.value("locked", json(false)) == json(true);
+  if (const auto group = in.find("group_apart"); group != in.end() && group->is_number_integer()) {
+    pose.group_apart = group->get<int>();
+  }
   const std::string status = text_of(in, "status");
   const PoseStatus all[] = {PoseStatus::kRegistered, PoseStatus::kUnsure, PoseStatus::kFailed};
   const auto* known = std::ranges::find_if(all, [&](PoseStatus one) { return status == to_string(one); });

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright The Dubsar developers
+#include <cctype>
 #include <cmath>
 
 #include "archive/html.h"
@@ -12,6 +13,13 @@ namespace {
 
 std::string item(const std::string& html) {
   return "<li>" + html + "</li>\n";
+}
+
+std::string capitalised(std::string sentence) {
+  if (!sentence.empty()) {
+    sentence.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(sentence.front())));
+  }
+  return sentence;
 }
 
 std::string area(double mm2) {
@@ -32,6 +40,9 @@ std::string open_points(const ReportInput& input) {
   if (list.scans_unsure > 0) {
     items += item(counted(list.scans_unsure, "scan is", "scans are") +
                   " unsure: its place is not certain, so it was left out of the mesh until someone decides.");
+  }
+  for (const GroupApart& group : input.red_map.apart) {
+    items += item(html_escaped(capitalised(group.say)) + ".");
   }
   if (list.scans_failed > 0) {
     items += item(counted(list.scans_failed, "scan", "scans") + " could not be placed at all.");

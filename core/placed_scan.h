@@ -20,6 +20,8 @@ struct PlacedScan {
   double sigma_mm = 0;  ///< of the pose
   /// Of one sample along the view (grid_noise.h), where somebody has estimated it already.
   std::optional<double> noise_mm = std::nullopt;
+  bool is_fixed =
+      false;  ///< the operator locked its pose: others are laid against it, it is not laid elsewhere
 };
 
 }  // namespace dubsar

@@ -68,6 +68,12 @@ struct NextView {
   std::optional<Placement> placement;  ///< set when the rig can be driven or the operator asked
 };
 
+/// Scans that fit one another and nothing of the model, such as those of the other side of a tablet.
+struct GroupApart {
+  std::vector<int> ids;  ///< two at least, ascending
+  std::string say;       ///< that they do, and which view would join them: words that an operator can follow
+};
+
 /// What is still missing (seed 001, 3.3; design.md "Red map").
 struct RedMap {
   bool conclusive = false;
@@ -75,6 +81,7 @@ struct RedMap {
   std::vector<ScanCopy> copies;  ///< placed scans that count as one of `scans` and are not among them; by id
   std::vector<RedRegion> regions;
   std::vector<NextView> next;
+  std::vector<GroupApart> apart;  ///< by their lowest id; what they saw counts as not seen
 };
 
 }  // namespace dubsar

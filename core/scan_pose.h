@@ -25,6 +25,9 @@ struct ScanPose {
   std::string reason;   ///< why it is unsure or failed and what would settle it; empty when registered
   std::string warning;  ///< what is wrong with a registered scan although its pose is sure; mostly empty
   bool locked = false;  ///< fixed by the operator; relaxation leaves it alone
+  /// Of an unsure scan that fits others which are not of the model either: the lowest id of them all, with
+  /// itself; their poses are in one frame of their own then. -1 of any other.
+  int group_apart = -1;
   /// Covariance of the left perturbation twist (omega rad, v mm) about the scan's centroid in the model
   /// frame.
   std::optional<Eigen::Matrix<double, 6, 6>> covariance;

@@ -317,7 +317,7 @@ Result<ScanData> read_ply_scan(std::string_view bytes, const std::string& name,
   }
   const double mm = options.mm_per_unit ? *options.mm_per_unit : *said;
 
-  PlyBody body(*header, bytes, name);
+  PlyBody body(*header, bytes, name, options.job);
   const PlyElement& vertex = *header->element("vertex");
   // Both are read here even when the indices come first: their claims are checked against the bytes.
   if (vertex.count > bytes.size()) {

@@ -18,6 +18,7 @@ namespace {
 constexpr std::size_t kMaxColumns = 16;
 /// Words may stand above the numbers, but not a whole document.
 constexpr std::size_t kMaxLeadingLines = 64;
+constexpr std::size_t kAskEvery = 4096;  ///< lines
 
 struct Line {
   std::array<double, kMaxColumns> values{};
@@ -118,6 +119,9 @@ Result<ScanData> read_point_text(std::string_view bytes, const std::string& name
   std::size_t columns = 0;
   CommaReading commas;
   for (std::size_t number = 1; text.remaining() > 0; ++number) {
+    if (number % kAskEvery == 0 && options.job != nullptr && options.job->cancelled()) {
+      return fail(ErrorKind::kCancelled, "reading was stopped", name);
+    }
     const std::string_view whole = text.line();
     bool decimal_commas = false;
     if (whole.contains(',')) {

@@ -73,6 +73,9 @@ ScanPose pose_from(const JsonNode& node, double mm) {
   if (const auto locked = node.find("locked")) {
     pose.locked = locked->boolean();
   }
+  if (const auto group = node.find("group_apart")) {
+    pose.group_apart = static_cast<int>(group->integer(0, std::numeric_limits<int>::max()));
+  }
   if (const auto covariance = node.find("covariance")) {
     pose.covariance = covariance_from(*covariance);
   }
@@ -104,6 +107,9 @@ std::string poses_to_json(std::span<const ScanPose> poses) {
       scan["warning"] = pose.warning;
     }
     scan["locked"] = pose.locked;
+    if (pose.group_apart >= 0) {
+      scan["group_apart"] = pose.group_apart;
+    }
     if (pose.covariance) {
       scan["covariance"] = covariance_json(*pose.covariance);
     }

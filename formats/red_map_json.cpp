@@ -80,6 +80,15 @@ ScanCopy copy_from(const JsonNode& node) {
           static_cast<int>(node.at("of").integer(0, kMostId))};
 }
 
+GroupApart group_from(const JsonNode& node) {
+  GroupApart group;
+  for (const JsonNode& id : node.at("scans").items()) {
+    group.ids.push_back(static_cast<int>(id.integer(0, std::numeric_limits<int>::max())));
+  }
+  group.say = node.at("say").text();
+  return group;
+}
+
 RedRegion region_from(const JsonNode& node) {
   RedRegion region;
   region.face = static_cast<Face>(node.at("face").one_of(face_names()));
@@ -121,6 +130,14 @@ NextView view_from(const JsonNode& node) {
 
 }  // namespace
 
+OrderedJson apart_json(const std::vector<GroupApart>& groups) {
+  OrderedJson json = OrderedJson::array();
+  for (const GroupApart& group : groups) {
+    json.push_back({{"scans", group.ids}, {"say", group.say}});
+  }
+  return json;
+}
+
 std::string red_map_to_json(const RedMap& map) {
   OrderedJson root;
   root["conclusive"] = map.conclusive;
@@ -138,6 +155,9 @@ std::string red_map_to_json(const RedMap& map) {
   root["next"] = OrderedJson::array();
   for (const NextView& view : map.next) {
     root["next"].push_back(view_json(view));
+  }
+  if (!map.apart.empty()) {
+    root["groups_apart"] = apart_json(map.apart);
   }
   return text_of(root);
 }
@@ -167,6 +187,11 @@ Result<RedMap> parse_red_map(std::string_view text, const std::string& where) {
   }
   for (const JsonNode& node : root.at("next").items()) {
     map.next.push_back(view_from(node));
+  }
+  if (const auto apart = root.find("groups_apart")) {
+    for (const JsonNode& node : apart->items()) {
+      map.apart.push_back(group_from(node));
+    }
   }
   if (Status status = document->status("give a red map as docs/formats/red_map.md has it"); !status) {
     return std::unexpected(status.error());

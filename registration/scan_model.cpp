@@ -7,7 +7,6 @@
 
 #include "core/number_text.h"
 #include "registration/align_near.h"
-#include "registration/pin_advice.h"
 #include "registration/pin_detection.h"
 #include "registration/pin_labels.h"
 #include "registration/pin_matching.h"
@@ -260,9 +259,9 @@ PoseHints ScanModel::hints_for(const Scan& scan, const std::vector<int>& group_i
 
 bool ScanModel::place(int as, const RigidTransform& model_from_as, bool locked, JobContext& job) {
   if (const std::optional<int> other = locked_as(as); other && *other != as) {
-    return locked && lock_near(as, model_from_as) == LockOutcome::kLocked;
+    return locked && lock_at(as, model_from_as);
   }
-  const RigidTransform model_from_scanner = model_from_as * scan_from(as).inverse();
+  const RigidTransform model_from_scanner = scan_placed(as, model_from_as);
   const int id = stands_as(as);
   const auto found = scans_.find(id);
   if (found == scans_.end() || !found->second.usable) {
@@ -284,6 +283,7 @@ bool ScanModel::place(int as, const RigidTransform& model_from_as, bool locked, 
   if (locked || ids.empty()) {
     scan.group = main;
     scan.group_from_scanner = model_from_scanner;
+    keep_pose(as, model_from_as);
     scan.reason.clear();
     if (!ids.empty()) {
       const ModelFit fit =
@@ -343,13 +343,16 @@ ScanPose ScanModel::pose(int as) const {
   ScanPose out;
   out.id = as;
   out.file = id == as ? scan.file : copies_.at(as).file;
-  out.model_from_scanner = scan.group_from_scanner * scan_from(as);
+  out.model_from_scanner = group_from(as);
   out.locked = scan.locked_as.contains(as);
   out.rms_mm = scan.rms_mm;
   out.overlap = scan.overlap;
   if (!scan.usable || scan.group != main_group()) {
     const bool in_group = scan.usable && members(scan.group).size() > 1;
     out.status = in_group ? PoseStatus::kUnsure : scan.outcome;
+    if (in_group && measurements(members(scan.group)) > 1) {
+      out.group_apart = members(scan.group).front();
+    }
     out.reason = in_group                     ? kOtherGroup
                  : !scan.fault_reason.empty() ? scan.fault_reason
                  : !scan.suspicion.empty()    ? scan.suspicion
@@ -363,16 +366,7 @@ ScanPose ScanModel::pose(int as) const {
     if (out.reason.empty()) {
       out.reason = "it was not tried; run registration again";
     }
-    if (scan.pins_expected) {
-      std::vector<ScanPins> others;
-      for (const auto& [other_id, other] : scans_) {
-        if (other_id != id && other.usable && other.group == main_group()) {
-          others.push_back(pins_of(other_id));
-        }
-      }
-      const PinAdvice advice = advise_pins(pins_of(id), others);
-      out.reason += advice.say.empty() ? "" : "; " + advice.say;
-    }
+    out.reason = beside_pins(id, out.reason, true);
     return out;
   }
   out.status = PoseStatus::kRegistered;
@@ -387,7 +381,7 @@ ScanPose ScanModel::pose(int as) const {
   const bool told = scan.is_locked() || scan.stage_sigma_mm > 0;
   if (!told && out.sigma_mm > std::max(kLoosestMm, kLoosestSpacings * scan.features.surface->spacing_mm)) {
     out.status = PoseStatus::kUnsure;
-    out.reason = too_even(turned > shifted);
+    out.reason = beside_pins(id, too_even(turned > shifted), false);
   }
   return out;
 }

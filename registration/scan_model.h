@@ -147,6 +147,15 @@ class ScanModel {
   /// One of its copies becomes the id under which the scan takes part.
   void hand_over(int from, int to);
   void set_scan_from(int id, const RigidTransform& from);
+  /// Where the scan lies in its group, in the frame of this id.
+  [[nodiscard]] RigidTransform group_from(int id) const;
+  /// The pose, as which it takes part, of a scan that is placed so in the frame of this id.
+  [[nodiscard]] RigidTransform scan_placed(int id, const RigidTransform& model_from_id) const;
+  /// As long as the scan stays where it is, the pose of this id is this one to the last digit: what is signed
+  /// goes by that. Where no sample tells it from where the scan lies.
+  void keep_pose(int id, const RigidTransform& model_from_id);
+  /// lock_near(), and the pose is kept. True where it is locked then.
+  bool lock_at(int id, const RigidTransform& model_from_id);
   /// The hint for this id, in the frames in which its two scans take part.
   [[nodiscard]] PoseHint hint_for(int id) const;
   /// Finds which scans are parts of this one, and of which it is one.
@@ -168,6 +177,9 @@ class ScanModel {
   [[nodiscard]] std::vector<int> groups_by_size() const;
   [[nodiscard]] PoseHints hints_for(const Scan& scan, const std::vector<int>& group_ids) const;
   [[nodiscard]] ScanPins pins_of(int id) const;
+  /// Why the scan does not join, with pins advised only where that helps: one that shows labelled pins has
+  /// what pins can do. `advise`: and what is wrong with those.
+  [[nodiscard]] std::string beside_pins(int id, std::string reason, bool advise) const;
   [[nodiscard]] std::vector<ModelScan> model_of(const std::vector<int>& ids) const;
   [[nodiscard]] std::vector<const ScanFeatures*> features_of(const std::vector<int>& ids) const;
   /// Looks for the scan's pose in the group: from its leads, and on the members that are new to it.
@@ -242,6 +254,11 @@ class ScanModel {
   std::map<int, Scan> scans_;
   std::map<int, Copy> copies_;               ///< by id; no id is in both
   std::map<int, RigidTransform> scan_from_;  ///< scan_from() of the ids that came in another frame
+  /// A pose that was given for an id, and its scan's group_from_scanner then.
+  struct KeptPose {
+    RigidTransform group_from_scanner, group_from_id;
+  };
+  std::map<int, KeptPose> kept_poses_;                   ///< by id
   std::map<std::pair<int, int>, RigidTransform> parts_;  ///< (part, whole): whole_from_part
   std::map<std::pair<int, int>, Pair> pairs_;
   std::set<int> unchecked_;        ///< joined, or with another that joined beside it, since put_out_faulty()

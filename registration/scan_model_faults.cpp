@@ -6,6 +6,7 @@
 
 #include "core/log.h"
 #include "core/parallel.h"
+#include "registration/pin_advice.h"
 #include "registration/pin_contradiction.h"
 #include "registration/scan_model.h"
 #include "registration/scan_motion.h"
@@ -109,6 +110,30 @@ void ScanModel::warn() {
   }
 }
 
+std::string ScanModel::beside_pins(int id, std::string reason, bool advise) const {
+  const Scan& scan = scans_.at(id);
+  if (!scan.pins_expected) {
+    return reason;
+  }
+  std::vector<ScanPins> others;
+  for (const auto& [other_id, other] : scans_) {
+    if (other_id != id && other.usable && other.group == main_group()) {
+      others.push_back(pins_of(other_id));
+    }
+  }
+  const PinAdvice advice = advise_pins(pins_of(id), others);
+  std::string said = std::move(reason);
+  if (std::ranges::any_of(scan.pins, [](const SeenPin& pin) { return pin.label >= 0; })) {
+    std::string without = without_pins_advised(said);
+    const bool advised = without != said;
+    said = std::move(without);
+    // They tell about where it lies, which is not what it lacks.
+    said +=
+        advised && advice.fault == PinFault::kNone ? "; its pins, put back by hand, hold it no better" : "";
+  }
+  return said + (!advise || advice.say.empty() ? "" : "; " + advice.say);
+}
+
 void ScanModel::warn_of_pins(const std::vector<int>& ids) {
   std::vector<ScanPinsInModel> pins;
   pins.reserve(ids.size());
@@ -151,7 +176,7 @@ void ScanModel::warn_of_stretched(const std::vector<int>& ids) {
   for (const std::size_t k : accused) {
     if (sound.size() < ids.size()) {
       const std::optional<ScanStretch> alone = stretch_among(ids[k], sound);
-      if (alone && alone->is_certain() && !alone->is_off()) {
+      if (alone && alone->acquits_of(*stretches[k])) {
         continue;
       }
     }

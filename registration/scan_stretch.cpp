@@ -5,6 +5,7 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <memory>
 #include <utility>
 
@@ -246,7 +247,11 @@ std::optional<ScanStretch> find_stretch(const ScanSurface& scan, std::span<const
     return sheared;
   }
   // What is free and not wrong takes up a little of what is.
-  return stretch_of(scan, fit_freely(scan, model, fit, Shear::kNone, 1));
+  std::optional<ScanStretch> stretched = stretch_of(scan, fit_freely(scan, model, fit, Shear::kNone, 1));
+  if (stretched) {
+    stretched->shear_sigma = sheared ? sheared->shear_sigma : std::numeric_limits<double>::infinity();
+  }
+  return stretched;
 }
 
 bool ScanStretch::has_lengths_off() const {
@@ -254,8 +259,9 @@ bool ScanStretch::has_lengths_off() const {
   return larger >= kLeastStretch && larger <= kMostStretch && sigma <= kMostSigma;
 }
 
-bool ScanStretch::is_certain() const {
-  return sigma <= kMostSigma;
+bool ScanStretch::acquits_of(const ScanStretch& accused) const {
+  return !is_off() && (!accused.has_lengths_off() || sigma <= kMostSigma) &&
+         (!accused.is_sheared() || shear_sigma <= kMostShearSigma);
 }
 
 bool ScanStretch::is_sheared() const {

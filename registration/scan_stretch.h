@@ -18,7 +18,7 @@ struct ScanStretch {
   double along_motion = 0;  ///< the stage's, y
   double shear = 0;         ///< x that is added for each y: lines drift sideways, or the axes are not square
   double sigma = 0;         ///< of the worse determined length, if samples were independent
-  double shear_sigma = 0;   ///< likewise
+  double shear_sigma = 0;   ///< likewise; of the fit with a shear, also where none is told
   /// The scan's samples with both taken off, and where they then lie: for what else may be wrong.
   std::unique_ptr<ScanSurface> mended;
   RigidTransform model_from_mended;
@@ -31,8 +31,8 @@ struct ScanStretch {
   [[nodiscard]] bool is_rather_sheared() const;
   /// How much of that.
   [[nodiscard]] double largest() const;
-  /// Enough is shared to tell lengths.
-  [[nodiscard]] bool is_certain() const;
+  /// Nothing is off here, and enough is shared to tell that of what the other one accuses the scan of.
+  [[nodiscard]] bool acquits_of(const ScanStretch& accused) const;
 };
 
 /// Fits the scan to the others with its lengths left free: a stage whose step is not what it says, or a scan

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string_view>
 
 #include "core/units.h"
 
@@ -13,6 +14,10 @@ namespace {
 
 /// What fits turned by less fits shifted.
 constexpr double kLeastTurnRad = 0.15;
+
+/// Of no use where pins are in the scans already.
+constexpr const char* kOrUsePins = ", or use pins";
+constexpr const char* kUsePins = ", use pins";
 
 std::string percent(double share) {
   return std::to_string(std::lround(100.0 * share)) + " %";
@@ -135,7 +140,16 @@ std::string not_the_same_clay() {
 
 std::string too_even(bool turns) {
   return std::string("the overlap is too even: the scan can ") + (turns ? "turn" : "slide") +
-         " on it; scan again with an edge or more relief in the overlap, or use pins";
+         " on it; scan again with an edge or more relief in the overlap" + kOrUsePins;
+}
+
+std::string without_pins_advised(std::string reason) {
+  for (const std::string_view advice : {kOrUsePins, kUsePins}) {
+    if (const std::size_t at = reason.find(advice); at != std::string::npos) {
+      reason.erase(at, advice.size());
+    }
+  }
+  return reason;
 }
 
 double doubt(const ModelFit& fit, const VerifyOptions& options) {
@@ -181,7 +195,8 @@ PoseVerdict verify_pose(std::vector<ModelFit>& fits, const VerifyOptions& option
                : PoseVerdict{
                      PoseStatus::kUnsure,
                      "too little is written or broken in the overlap to tell this pose from others; scan "
-                     "again with more overlap, use pins, or click one point on both scans"};
+                     "again with more overlap" +
+                         std::string(kUsePins) + ", or click one point on both scans"};
   }
   std::rotate(fits.begin(), best, best + 1);
   const ModelFit& chosen = fits.front();

@@ -81,6 +81,8 @@ struct PoseVerdict {
 
 /// Why a scan is unsure whose overlap lets it move: it `turns`, or else slides.
 [[nodiscard]] std::string too_even(bool turns);
+/// A reason without the advice to use pins, for a scan that has some.
+[[nodiscard]] std::string without_pins_advised(std::string reason);
 
 /// True when nothing that was seen contradicts the pose: what a scan needs whose pose the stage guarantees.
 [[nodiscard]] bool consistent_pose(const ModelFit& fit, const VerifyOptions& options);

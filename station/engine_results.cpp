@@ -24,6 +24,9 @@ Status Engine::Impl::finish(EngineResult& result, JobContext& job) {
     }
     results.mesh = std::move(*stitched);
   }
+  for (std::string& warning : planning.warnings_of_mesh(names)) {
+    emit(Notice{std::move(warning)});
+  }
   {
     const StageClock timing = clock("checklist");
     Result<Checklist> list = checklist_of(result.red_map, result.poses, planning, results.mesh,

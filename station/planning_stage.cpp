@@ -9,12 +9,14 @@
 #include "core/tablet_frame.h"
 #include "core/units.h"
 #include "planning/clearing.h"
+#include "planning/groups_apart.h"
 #include "planning/model_faces.h"
 #include "planning/red_change.h"
 #include "planning/red_map.h"
 #include "planning/sample_states.h"
 #include "planning/side_view.h"
 #include "station/near_mesh.h"
+#include "station/stitch_warnings.h"
 
 namespace dubsar {
 
@@ -55,13 +57,26 @@ void PlanningStage::take_out(int id) {
 }
 
 Status PlanningStage::place(const std::vector<ScanPose>& poses, bool exact, JobContext& job) {
+  poses_ = poses;
   std::ranges::for_each(flags_.follow(poses), [this](int id) { take_out(id); });
+  std::set<int> in_the_way;  // with all that they have: no part of the mesh, so none of the red map
+  for (const ForeignFound& found : flags_.foreign()) {
+    if (found.is_all()) {
+      in_the_way.insert(found.id);
+    }
+  }
   std::map<int, PlacedScan> wanted;
   for (const ScanPose& pose : poses) {
     const auto scan = scans_.find(pose.id);
-    if (pose.status == PoseStatus::kRegistered && scan != scans_.end() && !copied_from(copies(), pose.id)) {
-      wanted[pose.id] = {pose.id, scan->second.grid.get(), &flags_.of(pose.id), pose.model_from_scanner,
-                         pose.sigma_mm};
+    if (pose.status == PoseStatus::kRegistered && scan != scans_.end() && !copied_from(copies(), pose.id) &&
+        !in_the_way.contains(pose.id)) {
+      wanted[pose.id] = {pose.id,
+                         scan->second.grid.get(),
+                         &flags_.of(pose.id),
+                         pose.model_from_scanner,
+                         pose.sigma_mm,
+                         std::nullopt,
+                         pose.locked};
     }
   }
   std::vector<int> gone;
@@ -80,7 +95,8 @@ Status PlanningStage::place(const std::vector<ScanPose>& poses, bool exact, JobC
     followed.push_back({id, scan.model_from_scanner, scan.sigma_mm});
     const double moved_mm =
         displacement_mm(placed.box_mm, placed.scan.model_from_scanner, scan.model_from_scanner);
-    if (moved_mm > tolerance * scan.grid->spacing_mm || (exact && placed.scan.sigma_mm != scan.sigma_mm)) {
+    if (moved_mm > tolerance * scan.grid->spacing_mm || placed.scan.is_fixed != scan.is_fixed ||
+        (exact && placed.scan.sigma_mm != scan.sigma_mm)) {
       stitcher_.remove(id);
       placed.scan = scan;
       placed.stitched = false;
@@ -289,6 +305,11 @@ Result<Mesh> PlanningStage::mesh(JobContext& job) {
   return stitcher_.mesh(job);
 }
 
+std::vector<std::string> PlanningStage::warnings_of_mesh(std::map<int, std::string> names) const {
+  std::erase_if(names, [&](const auto& scan) { return !placed_.contains(scan.first); });
+  return warnings_of_places(stitcher_, names);
+}
+
 std::optional<ViewGain> PlanningStage::gain_of_new(std::span<const PlacedScan> scans) const {
   const PlacedScan* fresh = nullptr;
   for (const PlacedScan& scan : scans) {
@@ -324,6 +345,7 @@ Result<RedMap> PlanningStage::red_map(const Rig* rig, JobContext& job) {
     return std::unexpected(result.error());
   }
   result->map.copies = copies();
+  result->map.apart = groups_apart(poses_, scans);
   last_gain_ = gain_of_new(scans);
   if (last_gain_) {
     gains_.push_back(*last_gain_);

@@ -89,6 +89,9 @@ class PlanningStage {
 
   /// The mesh of what is placed; stitches what is not stitched yet.
   [[nodiscard]] Result<Mesh> mesh(JobContext& job);
+  /// What mesh() made of poses that do not fit each other, as warnings_of_places(). `names`: of any scans, by
+  /// id.
+  [[nodiscard]] std::vector<std::string> warnings_of_mesh(std::map<int, std::string> names) const;
 
   /// Red (and amber, excused) samples of the last red_map() in the model frame, for pictures of the mesh.
   /// Excused samples that hang in the air are left out, strays and others: they would make the picture of
@@ -120,6 +123,7 @@ class PlanningStage {
   std::map<int, StationScan> scans_;
   TabletFlags flags_;
   std::map<int, Placed> placed_;
+  std::vector<ScanPose> poses_;  ///< that were followed last
   ClearedMap cleared_;
   Stitcher stitcher_;
   std::vector<SampleFlags> excused_flags_;  ///< of the last red map, by position in placed()

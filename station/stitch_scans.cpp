@@ -21,8 +21,9 @@ std::string size_fault(const RangeGrid& grid) {
 
 Status add_scan(Stitcher& stitcher, const StationScan& scan, const SampleFlags& flags, const ScanPose& pose,
                 const JobContext& job) {
-  Status added =
-      stitcher.add({scan.id, scan.grid.get(), &flags, pose.model_from_scanner, pose.sigma_mm}, job);
+  Status added = stitcher.add(
+      {scan.id, scan.grid.get(), &flags, pose.model_from_scanner, pose.sigma_mm, std::nullopt, pose.locked},
+      job);
   if (!added && added.error().kind == ErrorKind::kBadInput) {
     added.error().where = scan.file;
   }

@@ -23,6 +23,8 @@ constexpr double kLeastOfSpacing = 0.2;
 constexpr double kSignificance = 4.0;
 /// Motions are held to be no larger than this, unless steps say so.
 constexpr double kUsualOfSpacing = 4.0;
+/// So much more is known of where a fixed scan lies than steps to the others tell.
+constexpr double kFixedOfInformation = 1e8;
 /// So much of a motion may be wrong, and so many times the variance of a mean is that of where the scans are
 /// taken together; by simulated tablets with poses that are off by 1 to 4 µ.
 constexpr double kLeftOfMotion = 0.2;
@@ -151,6 +153,9 @@ class Group {
     for (std::size_t k = 0; k < members_.size(); ++k) {
       held_[k] = blocks_[k];
       held_[k].diagonal().array() += 1.0 / (usual_mm * std::max(sizes[k], 0.01 * spacing_mm_));
+      if (scan(k).is_fixed) {
+        held_[k].diagonal().array() += kFixedOfInformation * held_[k].trace();
+      }
       for (int row = 0; row < 6; ++row) {
         for (int col = 0; col <= row; ++col) {
           entries.emplace_back(at(k) + row, at(k) + col, held_[k](row, col));

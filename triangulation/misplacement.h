@@ -17,9 +17,9 @@ struct PoseLink {
 };
 
 /// How each scan's pose seems to be off: from the motions of all scans that explain the steps between them
-/// best, of these the ones that move as few scans as possible. Nothing where that does not stand well above
-/// its own error, or is a small part of the spacing. A pass of a stage may stand for its scan. The order of
-/// `links` decides about rounding alone.
+/// best, of these the ones that move as few scans as possible, and none that is fixed. Nothing where that
+/// does not stand well above its own error, or is a small part of the spacing. A pass of a stage may stand
+/// for its scan. The order of `links` decides about rounding alone.
 [[nodiscard]] std::vector<Misplacement> misplacements(std::span<const StitchSurface* const> scans,
                                                       std::span<const PoseLink> links);
 

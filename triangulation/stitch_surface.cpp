@@ -233,6 +233,7 @@ StitchSurface bare_surface(const PlacedScan& scan) {
   StitchSurface out;
   out.id = scan.id;
   out.told_pose_sigma_mm = out.pose_sigma_mm = scan.sigma_mm;
+  out.is_fixed = scan.is_fixed;
   out.spacing_mm = grid.spacing_mm > 0 ? grid.spacing_mm : estimate_spacing_mm(grid);
   out.lattice = Lattice(grid.rows, grid.cols);
   out.node_sample.assign(out.lattice.size(), -1);

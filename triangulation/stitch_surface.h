@@ -51,6 +51,7 @@ struct StitchSurface {
   int id = 0;
   double told_pose_sigma_mm = 0;  ///< as it came
   double pose_sigma_mm = 0;       ///< that, or what the overlaps with other scans say of `back`
+  bool is_fixed = false;          ///< `back` stays none
   /// From where its pose puts it to where the other scans have it: there it lies in the mesh. None where its
   /// pose is not known to be off.
   SmallMotion back;

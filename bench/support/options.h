@@ -4,6 +4,7 @@
 
 #include <CLI/CLI.hpp>
 #include <cmath>
+#include <cstdint>
 #include <cstdio>
 #include <optional>
 #include <string>
@@ -11,8 +12,9 @@
 /// How every bench reads its words.
 namespace dubsar::bench {
 
-/// A number with a point that is one: "nan" is neither below nor above any limit, and passes every range.
-inline void refuse_what_is_not_finite(CLI::App& app) {
+/// A number with a point that is one: "nan" is neither below nor above any limit, and passes every range. And
+/// a number without a sign that has none: "-1" is read as the largest there is, and a bench would never end.
+inline void refuse_what_is_no_number(CLI::App& app) {
   static const CLI::Validator kFinite(
       [](std::string& text) {
         double value = 0;
@@ -20,20 +22,28 @@ inline void refuse_what_is_not_finite(CLI::App& app) {
                                                                               : "'" + text + "' is no number";
       },
       "");
+  static const CLI::Validator kUnsigned(
+      [](std::string& text) {
+        return text.find('-') == std::string::npos ? std::string() : "'" + text + "' is below 0";
+      },
+      "");
   for (CLI::Option* option : app.get_options({})) {
     if (option->get_type_name().find(CLI::detail::type_name<double>()) != std::string::npos) {
       option->check(kFinite);
     }
+    if (option->get_type_name().find(CLI::detail::type_name<std::uint64_t>()) != std::string::npos) {
+      option->check(kUnsigned);
+    }
   }
   for (CLI::App* verb : app.get_subcommands({})) {
-    refuse_what_is_not_finite(*verb);
+    refuse_what_is_no_number(*verb);
   }
 }
 
 /// Reads the words. A status where the bench is to end with it at once: 0 when help was asked for, and 2,
 /// with one line, for wrong use.
 [[nodiscard]] inline std::optional<int> ends_with(CLI::App& app, int argc, const char* const* argv) {
-  refuse_what_is_not_finite(app);
+  refuse_what_is_no_number(app);
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& asked_for_help) {

@@ -222,6 +222,9 @@ void print_map(const RedMap& map) {
   if (strays > 0) {
     std::printf("  %d groups of stray returns, where no clay is missing\n", strays);
   }
+  for (const GroupApart& group : map.apart) {
+    std::printf("  apart: %s\n", group.say.c_str());
+  }
   for (const NextView& view : map.next) {
     std::printf("  next: %s (about %.1f mm2)\n", view.say.c_str(), view.predicted_cleared_mm2);
   }

@@ -16,6 +16,8 @@
 #include "core/utf8.h"
 #include "formats/atomic_file.h"
 #include "formats/poses_json.h"
+#include "formats/red_map_json.h"
+#include "planning/groups_apart.h"
 #include "station/command/command.h"
 #include "station/command/outputs.h"
 #include "station/command/scan_set_options.h"
@@ -84,14 +86,22 @@ Result<int> register_all(const RegisterArguments& arguments, CommandContext& con
   }
   warn_of_copies(*set, *poses);
   finish_progress();
+  const std::vector<GroupApart> apart = groups_apart(*poses, placed_scans(*set, *poses));
   if (context.json) {
-    CommandContext::print(nlohmann::ordered_json::parse(poses_to_json(*poses)));
+    auto json = nlohmann::ordered_json::parse(poses_to_json(*poses));
+    if (!apart.empty()) {
+      json["groups_apart"] = apart_json(apart);
+    }
+    CommandContext::print(json);
   } else {
     for (const ScanPose& pose : *poses) {
       const std::string& remark = remark_of(pose);
       std::printf("%3d  %-10s rms %.4f mm  sigma %.4f mm  overlap %3.0f %%  %s%s%s\n", pose.id,
                   to_string(pose.status), pose.rms_mm, pose.sigma_mm, 100 * pose.overlap,
                   one_line(pose.file).c_str(), remark.empty() ? "" : ": ", remark.c_str());
+    }
+    for (const GroupApart& group : apart) {
+      std::printf("apart: %s\n", group.say.c_str());
     }
   }
   for (const ScanPose& pose : *poses) {

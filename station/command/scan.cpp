@@ -88,6 +88,11 @@ class Narrator {
       }
       log_info(fmt::format("red: about {:.1f} mm2 in {} regions", red_area_mm2(changed->red_map),
                            red_regions(changed->red_map)));
+      for (const GroupApart& group : changed->red_map.apart) {
+        if (told_.insert(group.say).second) {
+          log_warning(group.say);
+        }
+      }
     } else if (const auto* next = std::get_if<NextPlacement>(&event)) {
       log_info(fmt::format("next: {} (about {:.1f} mm2)", next->view.say, next->view.predicted_cleared_mm2));
     } else if (const auto* notice = std::get_if<Notice>(&event)) {
@@ -152,6 +157,9 @@ void print_result(const EngineResult& result) {
     if (!path->empty()) {
       std::printf("  %-10s %s\n", name, path->c_str());
     }
+  }
+  for (const GroupApart& group : result.red_map.apart) {
+    std::printf("  apart      %s\n", group.say.c_str());
   }
   for (const NextView& view : result.red_map.next) {
     if (!result.red_map.conclusive) {

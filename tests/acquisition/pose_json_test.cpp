@@ -21,6 +21,14 @@ TEST(StoredPose, ReadsBackToTheBit) {
   EXPECT_EQ(back->model_from_scanner.row_major(), pose.model_from_scanner.row_major());
   EXPECT_EQ(back->rms_mm, pose.rms_mm);
   EXPECT_TRUE(back->locked);
+  EXPECT_EQ(back->group_apart, -1);
+}
+
+TEST(StoredPose, KeepsItsGroup) {
+  ScanPose pose;
+  pose.status = PoseStatus::kUnsure;
+  pose.group_apart = 0;
+  EXPECT_EQ(pose_from_json(2, json_from_pose(pose)).value().group_apart, 0);
 }
 
 // A session from elsewhere: the value was copied level by level, which ended the program.

@@ -202,6 +202,12 @@ TEST_F(Report, ScansWithoutAPlaceAreNamed) {
   EXPECT_THAT(report, HasSubstr("<td>4</td><td></td><td>not placed yet</td>"));
 }
 
+TEST_F(Report, ScansThatFitOneAnotherAloneAreToldWithWhatJoinsThem) {
+  map_.apart = {{{2, 3}, "scans 2 and 3 fit one another, and not scans <0>"}};
+  map_.conclusive = list_.conclusive = false;
+  EXPECT_THAT(html(), HasSubstr("<li>Scans 2 and 3 fit one another, and not scans &lt;0&gt;.</li>"));
+}
+
 TEST_F(Report, SaysWhenItWasScannedAndWhatWasTakenOut) {
   const std::string silent = html();
   EXPECT_THAT(silent, Not(HasSubstr("<dt>Scanned</dt>")));

@@ -39,6 +39,7 @@ ScanPose sample_pose(int id) {
 TEST(PosesJson, ReadsBackToTheBit) {
   std::vector<ScanPose> poses{sample_pose(0), sample_pose(7)};
   poses[1].warning = "its lengths are off";
+  poses[1].group_apart = 0;
   const auto back = parse_poses(poses_to_json(poses), "p");
   ASSERT_TRUE(back) << line_of(back);
   ASSERT_EQ(back->size(), 2U);
@@ -54,6 +55,8 @@ TEST(PosesJson, ReadsBackToTheBit) {
   EXPECT_EQ(a.reason, b.reason);
   EXPECT_EQ(a.warning, b.warning);
   EXPECT_EQ(a.locked, b.locked);
+  EXPECT_EQ(a.group_apart, b.group_apart);
+  EXPECT_EQ(back->front().group_apart, -1);
   EXPECT_EQ(a.covariance, b.covariance);
   EXPECT_EQ(poses_to_json(*back), poses_to_json(poses));
 }
@@ -195,6 +198,7 @@ RedMap sample_red_map() {
   view.placement =
       Placement{rad_from_deg(40), rad_from_deg(15), RigidTransform::from_twist({0, 1, 0}, {0, 0, 0})};
   map.next = {view, NextView{}};
+  map.apart = {{{3, 5}, "scans 3 and 5 fit one another"}};
   return map;
 }
 
@@ -206,6 +210,10 @@ TEST(RedMapJson, ReadsBack) {
   EXPECT_EQ(back->scans[1].samples, 50000000000);
   EXPECT_EQ(back->copies, map.copies);
   EXPECT_EQ(red_map_to_json(RedMap{}).find("copies"), std::string::npos);
+  ASSERT_EQ(back->apart.size(), 1U);
+  EXPECT_EQ(back->apart[0].ids, map.apart[0].ids);
+  EXPECT_EQ(back->apart[0].say, map.apart[0].say);
+  EXPECT_EQ(red_map_to_json(RedMap{}).find("groups_apart"), std::string::npos);
   EXPECT_EQ(back->regions[0].reason, map.regions[0].reason);
   EXPECT_EQ(back->regions[1].reason, map.regions[1].reason);
   EXPECT_EQ(back->regions[1].excuse, Excuse::kUnneeded);

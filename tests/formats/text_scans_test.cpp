@@ -3,6 +3,7 @@
 #include "formats/text_scans.h"
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <limits>
 
 #include "formats/atomic_file.h"
@@ -40,6 +41,36 @@ TEST(Ptx, ReadsOneScanInTheScannersFrame) {
   EXPECT_LT(grid.view.direction.z(), -0.99);
   EXPECT_NEAR(grid.spacing_mm, 100, 0.01);
   EXPECT_EQ(grid.source, "a.ptx");
+}
+
+TEST(ScanReading, EndsSoonAfterItIsStopped) {
+  JobContext job;
+  job.cancel();
+  std::string lines;
+  for (int k = 0; k < 5000; ++k) {
+    lines += std::to_string(k) + " 0.5 1\n";
+  }
+  const std::string ply =
+      "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty float z\n"
+      "end_header\n1 2 3\n";
+  std::string commas = kPtx;
+  std::ranges::replace(commas, '.', ',');
+  for (const auto& [name, bytes] : {std::pair<std::string, std::string>{"a.ptx", kPtx},
+                                    {"commas.ptx", commas},
+                                    {"a.xyz", lines},
+                                    {"a.ply", ply}}) {
+    const auto stopped = read_scan_bytes(bytes, name, {.job = &job});
+    ASSERT_FALSE(stopped) << name;
+    EXPECT_EQ(stopped.error().kind, ErrorKind::kCancelled) << name << ": " << line_of(stopped);
+    EXPECT_TRUE(read_scan_bytes(bytes, name)) << name;
+  }
+  // Also while its bytes are fetched, of which nothing is looked at.
+  const ScratchFolder folder;
+  ASSERT_TRUE(write_file_atomically(folder / "b.xyz", std::string_view("1 2 3\n")));
+  const auto stopped = read_scan_file(folder / "b.xyz", {.job = &job});
+  ASSERT_FALSE(stopped);
+  EXPECT_EQ(stopped.error().kind, ErrorKind::kCancelled) << line_of(stopped);
+  EXPECT_TRUE(read_scan_file(folder / "b.xyz"));
 }
 
 TEST(Ptx, ReadsSeveralScansAndCountsThem) {

@@ -127,6 +127,60 @@ TEST(Registrar, SaysWhenScansDoNotOverlap) {
   EXPECT_THAT(pose.reason, HasSubstr("scan"));
 }
 
+TEST(Registrar, ScansThatFitOneAnotherAndNotTheModelAreOfOneGroup) {
+  const auto surface = bumpy(13, 120);
+  Registrar registrar;
+  JobContext job;
+  for (const int id : {0, 1, 2, 3, 5}) {
+    FieldScan scan;
+    scan.seed = 20 + static_cast<std::uint64_t>(id);
+    (id < 3 ? scan.high_x_mm : scan.low_x_mm) = id < 3 ? -3 : 3;
+    registrar.add(id, share(scan_field(surface, pose_of(3.0 * id, -2.0 * id, 50.0 * id, {1, 0, 0}), scan)),
+                  nullptr, job);
+  }
+  const auto group = [&](std::size_t at) { return registrar.poses().at(at).group_apart; };
+  for (const std::size_t at : {0, 1, 2}) {
+    EXPECT_EQ(registrar.poses()[at].status, PoseStatus::kRegistered) << registrar.poses()[at].reason;
+    EXPECT_EQ(group(at), -1);
+  }
+  for (const std::size_t at : {3, 4}) {
+    EXPECT_EQ(registrar.poses()[at].status, PoseStatus::kUnsure);
+    EXPECT_EQ(group(at), 3);
+  }
+  registrar.remove(5, job);
+  EXPECT_EQ(group(3), -1) << "alone it is no group";
+}
+
+TEST(Registrar, PinsAreNotAdvisedToWhoHasSome) {
+  const auto plane = [](double, double) { return 0.0; };
+  const auto reason_with = [&](const std::optional<PinSet>& pins) {
+    Registrar registrar;
+    JobContext job;
+    ScanPose pose;
+    for (int k = 0; k < 2; ++k) {
+      FieldScan scan;
+      scan.seed = 30 + static_cast<std::uint64_t>(k);
+      scan.half_mm = 20;  // a field that cuts the plane on all sides
+      pose = registrar.add(k, share(scan_field(plane, pose_of(0, 0, 0, {2.0 * k, 0, 0}), scan)),
+                           pins ? &*pins : nullptr, job);
+    }
+    EXPECT_EQ(pose.status, PoseStatus::kUnsure);
+    return pose.reason;
+  };
+  EXPECT_THAT(reason_with({}), HasSubstr("use pins"));
+  PinSet pins;
+  for (int k = 0; k < 2; ++k) {
+    int label = 0;
+    for (const Eigen::Vector2d& at : {Eigen::Vector2d(-17, -17), Eigen::Vector2d(17, -15),
+                                      Eigen::Vector2d(-14, 17), Eigen::Vector2d(15, 16)}) {
+      pins.tips[k].push_back({label++, {at.x() - 2.0 * k, at.y(), 4.0 + label}});
+    }
+  }
+  const std::string reason = reason_with(pins);
+  EXPECT_THAT(reason, ::testing::Not(HasSubstr("use pins")));
+  EXPECT_THAT(reason, HasSubstr("; its pins, put back by hand, hold it no better"));
+}
+
 TEST(Registrar, DoesNotJoinDifferentObjects) {
   Registrar registrar;
   JobContext job;

@@ -153,6 +153,30 @@ TEST(ShearedScan, IsWarnedOfAlone) {
   }
 }
 
+/// What it shows without the others that are told lets a scan off only where that could tell it.
+TEST(ShearedScan, IsAcquittedOnlyWhereItsShearIsSure) {
+  ScanStretch accused;
+  accused.shear = 0.03;
+  accused.shear_sigma = 0.0005;
+  accused.sigma = 0.0002;
+  ASSERT_TRUE(accused.is_sheared());
+  ScanStretch alone;
+  alone.sigma = 0.0002;
+  alone.shear_sigma = 0.004;
+  EXPECT_FALSE(alone.acquits_of(accused)) << "its lengths are sure, and they were not accused";
+  alone.sigma = 0.004;
+  alone.shear_sigma = 0.0005;
+  EXPECT_TRUE(alone.acquits_of(accused));
+  ScanStretch too_long;
+  too_long.along_motion = 0.02;
+  too_long.sigma = 0.0002;
+  ASSERT_TRUE(too_long.has_lengths_off());
+  EXPECT_FALSE(alone.acquits_of(too_long));
+  alone.sigma = 0.0002;
+  EXPECT_TRUE(alone.acquits_of(too_long));
+  EXPECT_FALSE(too_long.acquits_of(too_long));
+}
+
 /// Small and coarse: a rim is a larger part of them.
 class RightScans : public testing::TestWithParam<std::uint64_t> {};
 

@@ -5,6 +5,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -17,6 +18,7 @@ struct Outcome {
   double spacing_mm = 0.25;
   std::vector<double> noises;
   int seeds = 4;
+  std::uint64_t tablets = 4;
 };
 
 Outcome asked(std::vector<const char*> words) {
@@ -25,6 +27,7 @@ Outcome asked(std::vector<const char*> words) {
   CLI::App app("A bench", "dubsar-some");
   app.add_option("--spacing", out.spacing_mm)->check(CLI::Range(0.05, 2.0));
   app.add_option("seeds", out.seeds)->check(CLI::Range(1, 100));
+  app.add_option("--tablets", out.tablets);
   CLI::App* verb = app.add_subcommand("noise", "");
   verb->add_option("--noises", out.noises);
   testing::internal::CaptureStderr();
@@ -34,10 +37,11 @@ Outcome asked(std::vector<const char*> words) {
 }
 
 TEST(BenchOptions, NumbersAreTaken) {
-  const Outcome out = asked({"--spacing", "0.5", "7", "noise", "--noises", "0", "1e-3"});
+  const Outcome out = asked({"--spacing", "0.5", "--tablets", "3", "7", "noise", "--noises", "0", "1e-3"});
   EXPECT_FALSE(out.status) << out.said;
   EXPECT_EQ(out.spacing_mm, 0.5);
   EXPECT_EQ(out.seeds, 7);
+  EXPECT_EQ(out.tablets, 3U);
   EXPECT_THAT(out.noises, testing::ElementsAre(0, 1e-3));
 }
 
@@ -50,6 +54,9 @@ TEST(BenchOptions, WhatIsNoNumberIsOneLineAndStatusTwo) {
                                              {"--spacing", "9"},
                                              {"noise", "--noises", "0.1", "-nan"},
                                              {"noise", "--noises", "1e999"},
+                                             {"--tablets", "-1"},
+                                             {"--tablets=-1"},
+                                             {"--tablets", " -1"},
                                              {"seven"},
                                              {"7.5"},
                                              {"--spacings", "1"}}) {

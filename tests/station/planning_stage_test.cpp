@@ -103,6 +103,57 @@ TEST(PlanningStage, ACopyIsTheScanThatItIsOf) {
   EXPECT_EQ(stage.placed().back().id, 2);
 }
 
+TEST(PlanningStage, AScanThatIsWhollyInTheWayIsNoPartOfRedMapAndMesh) {
+  PlanningStage stage;
+  std::vector<ScanPose> poses;
+  for (int k = 0; k < 4; ++k) {
+    stage.add(prepare_scan(k, test::bumpy_scan(k), std::nullopt));
+    poses.push_back({});
+    poses.back().id = k;
+    poses.back().status = PoseStatus::kRegistered;
+    poses.back().model_from_scanner = test::bumpy_pose(k);
+  }
+  JobContext job;
+  ASSERT_TRUE(stage.place(poses, true, job));
+  EXPECT_EQ(stage.placed().size(), 4U);
+  poses[0].model_from_scanner.translation_mm.z() += 10;  // as if something were held over the tablet
+  ASSERT_TRUE(stage.place(poses, true, job));
+  ASSERT_EQ(stage.foreign().size(), 1U);
+  ASSERT_TRUE(stage.foreign().front().is_all());
+  ASSERT_EQ(stage.placed().size(), 3U);
+  EXPECT_EQ(stage.placed().front().id, 1);
+}
+
+TEST(PlanningStage, TellsOfPosesThatDoNotFitAndLeavesALockedScanWhereItIs) {
+  PlanningStage stage;
+  std::vector<ScanPose> poses = poses_with(0.01);
+  std::map<int, std::string> names{{7, "not placed"}};
+  for (int k = 0; k < 3; ++k) {
+    stage.add(prepare_scan(k, test::bumpy_scan(k), std::nullopt));
+    names[k] = test::scan_name(k);
+  }
+  JobContext job;
+  ASSERT_TRUE(stage.place(poses, true, job));
+  ASSERT_TRUE(stage.mesh(job));
+  EXPECT_TRUE(stage.warnings_of_mesh(names).empty());
+  const auto height_mm = [&](const std::vector<ScanPose>& of) {
+    EXPECT_TRUE(stage.place(of, true, job));
+    const Mesh mesh = stage.mesh(job).value();
+    double sum_mm = 0;
+    for (const Eigen::Vector3f& p : mesh.positions) {
+      sum_mm += static_cast<double>(p.z());
+    }
+    return sum_mm / static_cast<double>(mesh.positions.size());
+  };
+  const double true_mm = height_mm(poses);
+  constexpr double kOffMm = 0.5;
+  poses[0].model_from_scanner.translation_mm.z() += kOffMm;
+  EXPECT_NEAR(height_mm(poses), true_mm, 0.1) << "one is laid where two have it";
+  EXPECT_FALSE(stage.warnings_of_mesh(names).empty());
+  poses[0].locked = true;
+  EXPECT_NEAR(height_mm(poses), true_mm + kOffMm, 0.1) << "two are laid where the locked one is";
+}
+
 /// Scans 0 and 1 lie as they were put down. Those after them, of the tablet on other sides, are not taken up.
 TEST(PlanningStage, AfterMissesTheTabletIsLaidOtherwiseAndLookedAtFromElsewhere) {
   Rig rig;

@@ -61,6 +61,42 @@ TEST_F(Register, TellsOfAScanThatCameTwice) {
               HasSubstr("scan_9.ply has the very samples of scan_1.ply, and counts as the same scan"));
 }
 
+/// Two halves that nothing ties together: scans 0 and 1 of the one, 2 and 3 of the other.
+void write_halves(const fs::path& folder) {
+  fs::create_directories(folder);
+  const auto surface = testing::bumpy(13, 120);
+  for (int k = 0; k < 4; ++k) {
+    testing::FieldScan scan;
+    scan.seed = 20 + static_cast<std::uint64_t>(k);
+    (k < 2 ? scan.high_x_mm : scan.low_x_mm) = k < 2 ? -3 : 3;
+    const RigidTransform pose = testing::pose_of(3.0 * k, -2.0 * k, 20.0 * k, {1, 0, 0});
+    ASSERT_TRUE(write_grid_ply(folder / test::scan_name(k), testing::scan_field(surface, pose, scan)));
+  }
+}
+
+TEST_F(Register, ScansThatFitOneAnotherAloneAreToldAsAGroup) {
+  write_halves(at("scans"));
+  const Outcome outcome = registered({});
+  EXPECT_EQ(outcome.status, 1) << outcome.err;
+  const nlohmann::json apart = outcome.json()["groups_apart"];
+  ASSERT_THAT(apart, SizeIs(1)) << outcome.out;
+  EXPECT_EQ(apart[0]["scans"], nlohmann::json({2, 3}));
+  const std::string say = apart[0]["say"];
+  EXPECT_THAT(say, HasSubstr("scans 2 and 3 fit one another, and not scans 0 and 1; to join them lay the "
+                             "tablet as for scan "));
+  EXPECT_EQ(outcome.json()["scans"][3]["group_apart"], 2);
+  EXPECT_THAT(run_command({"register", at("scans")}).out, HasSubstr("apart: " + say));
+  // Of a session everybody says the same, from what is stored.
+  const Outcome scanned =
+      run_command({"scan", "--device", "replay:" + at("scans"), "--session", at("session"), "--json"});
+  EXPECT_EQ(scanned.json()["red_map"]["groups_apart"], apart);
+  EXPECT_THAT(scanned.err, HasSubstr(say));
+  const Outcome planned = run_command({"plan", at("session"), "--json"});
+  EXPECT_EQ(planned.json()["groups_apart"], apart) << planned.out;
+  EXPECT_THAT(run_command({"plan", at("session")}).out, HasSubstr("apart: " + say));
+  EXPECT_THAT(test::bytes_of(at("session") + "/export/report.html"), HasSubstr("<li>S" + say.substr(1)));
+}
+
 TEST_F(Register, OnlyMovesTheScansThatItNames) {
   test::write_bumpy_scans(at("scans"), 4);
   run_command({"scan", "--device", "replay:" + at("scans"), "--session", at("session")});

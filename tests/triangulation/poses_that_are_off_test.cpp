@@ -102,6 +102,23 @@ TEST(PosesThatAreOff, OneIsToldByItsPairsAndNoOthers) {
   EXPECT_THAT(true_ones.moved_mm(), IsEmpty());
 }
 
+TEST(PosesThatAreOff, OneThatIsFixedStaysAndTheOthersAreLaidAgainstIt) {
+  test::ScanSet set = ball_with_one_off(kOff);
+  set.placed[2].is_fixed = true;
+  const Stitcher stitcher = holding(set);
+  const std::map<int, double> moved_mm = stitcher.moved_mm();
+  EXPECT_FALSE(moved_mm.contains(2));
+  ASSERT_EQ(moved_mm.size(), set.placed.size() - 1);
+  for (const auto& [id, mm] : moved_mm) {
+    EXPECT_NEAR(mm, kOff.norm(), 0.05) << id;
+  }
+  // Two that contradict each other stay both, and are told.
+  set.placed[0].is_fixed = true;
+  const Stitcher both = holding(set);
+  EXPECT_FALSE(both.moved_mm().contains(0) || both.moved_mm().contains(2));
+  EXPECT_TRUE(std::ranges::any_of(both.overlaps(), [](const Stitcher::Overlap& o) { return o.is_off(); }));
+}
+
 TEST(PosesThatAreOff, OneSaysSoInSigmaAndReliabilityThoughNobodyToldIt) {
   const test::ScanSet set = ball_with_one_off(kOff);
   const Mesh mesh = stitched(set);

@@ -270,6 +270,50 @@ TEST(EngineWords, WhoSetsAScanAsideSaysItInOneLanguage) {
             "Scans 1, 2 und 5 passen zueinander und nicht zu Scan 0");
 }
 
+TEST(EngineWords, GroupsApartAreToldInOneLanguage) {
+  EXPECT_EQ(
+      translated(
+          "scans 2 to 4 and 6 fit one another, and not scans 0 and 1; to join them lay the tablet as "
+          "for scan 1, turn the right edge towards the camera, 25°, scan, and scan twice more, each "
+          "time turned on by 45° over that edge; or scan both sides again with the same pins standing, "
+          "or click three places that a scan of each shows; take out what is of another tablet",
+          Language::kGerman),
+      "Scans 2 bis 4 und 6 passen zueinander, und nicht zu Scans 0 und 1; um sie zu verbinden, die Tafel "
+      "hinlegen wie bei Scan 1, den rechten Rand zur Kamera drehen, 25°, scannen, und noch zweimal scannen, "
+      "jedes Mal um 45° weiter über diesen Rand gedreht; oder beide Seiten mit denselben stehenden Nadeln "
+      "neu "
+      "scannen, oder drei Stellen anklicken, die je ein Scan von beiden zeigt; herausnehmen, was von einer "
+      "anderen Tafel ist");
+  EXPECT_EQ(
+      translated("scans 5 to 8 fit one another, and not scan 1; to join them scan the edge between them, "
+                 "held so that both sides are in view",
+                 Language::kGerman),
+      "Scans 5 bis 8 passen zueinander, und nicht zu Scan 1; um sie zu verbinden, den Rand zwischen "
+      "ihnen scannen, so gehalten, dass beide Seiten zu sehen sind");
+}
+
+TEST(EngineWords, AdviceOfPinsIsGermanWithThemAndWithout) {
+  EXPECT_EQ(
+      translated("the overlap is too even: the scan can slide on it; scan again with an edge or more "
+                 "relief in the overlap, or use pins",
+                 Language::kGerman),
+      "die Überlappung ist zu eben: der Scan kann darauf gleiten; neu scannen, mit einer Kante oder mehr "
+      "Relief in der Überlappung, oder mit Nadeln");
+  EXPECT_EQ(
+      translated("the overlap is too even: the scan can turn on it; scan again with an edge or more "
+                 "relief in the overlap; its pins, put back by hand, hold it no better",
+                 Language::kGerman),
+      "die Überlappung ist zu eben: der Scan kann sich darauf drehen; neu scannen, mit einer Kante oder "
+      "mehr Relief in der Überlappung; seine Nadeln, von Hand zurückgestellt, halten ihn nicht besser");
+  EXPECT_EQ(
+      translated("too little is written or broken in the overlap to tell this pose from others; scan "
+                 "again with more overlap, use pins, or click one point on both scans",
+                 Language::kGerman),
+      "in der Überlappung ist zu wenig geschrieben oder gebrochen, um diese Lage von anderen zu "
+      "unterscheiden; mit mehr Überlappung neu scannen, Nadeln nehmen, oder eine Stelle in beiden Scans "
+      "anklicken");
+}
+
 TEST(EngineWords, WhatOpeningASessionPutRightIsGerman) {
   const auto german = [](const char* said) { return translated(said, Language::kGerman); };
   EXPECT_EQ(german("took in grids/007.grid, which was stored and not yet listed"),
@@ -311,6 +355,31 @@ TEST(EngineWords, NoPhraseHidesALongerOneBehindIt) {
           << phrases[a].english << " stands before " << phrases[b].english;
     }
   }
+}
+
+TEST(EngineWords, WhatIsSaidOfPosesThatDoNotFitIsGerman) {
+  EXPECT_EQ(
+      translated(
+          "scans 2 and 5 lie 0.31 mm apart where they overlap, more than noise explains; the mesh is less "
+          "reliable, and may have a scan where the others fit it, not where its pose puts it; register "
+          "them again",
+          Language::kGerman),
+      "die Scans 2 und 5 liegen 0,31 mm auseinander, wo sie sich überdecken, mehr als das Rauschen erklärt; "
+      "das "
+      "Netz ist weniger verlässlich und hat einen Scan vielleicht dort, wo die anderen zu ihm passen, nicht "
+      "wo "
+      "seine Lage ihn hinstellt; neu registrieren");
+  EXPECT_EQ(
+      translated(
+          "3 of 12 pairs of scans lie apart where they overlap, by up to 0.31 mm, more than noise "
+          "explains; the mesh is less reliable, and may have a scan where the others fit it, not where "
+          "its pose puts it; register them again; at fault seem: a.ply (apart from 3 others, 0.30 mm off)",
+          Language::kGerman),
+      "3 von 12 Paaren von Scans liegen auseinander, wo sie sich überdecken, um bis zu 0,31 mm, mehr als das "
+      "Rauschen erklärt; das Netz ist weniger verlässlich und hat einen Scan vielleicht dort, wo die anderen "
+      "zu "
+      "ihm passen, nicht wo seine Lage ihn hinstellt; neu registrieren; schuld sind wohl: a.ply (neben 3 "
+      "anderen, 0,30 mm daneben)");
 }
 
 TEST(EngineWords, SentencesOfUnsureScansAreGerman) {

@@ -247,7 +247,7 @@ TEST_F(ViewerByKeys, ChoosesFromAListMovesASliderAndPressesByTheSpaceKey) {
   on_to("tool-correct", 9);
   script += "key enter\nwait marked.0\n";
   on_to("radiance", 5);
-  script += "expect radiance=0.0\nkey right\nkey right\nexpect radiance=0.2\nkey left\nwait radiance=0.1\n";
+  script += "expect radiance=0.8\nkey right\nkey right\nexpect radiance=1.0\nkey left\nwait radiance=0.9\n";
   on_to("overlay", 2);
   script +=
       "key enter\nwait framed.overlay.Clay\nkey escape\npause 0.2\nexpect framed.overlay\nkey enter\n"

@@ -26,6 +26,41 @@ TEST(Statement, AsksForAScannerFirst) {
   EXPECT_FALSE(s.may_sign);
 }
 
+/// What was scanned elsewhere is judged, signed and packed here.
+TEST(Statement, WithoutAScannerOnlyScanningHasToWait) {
+  LiveState state = with_scan(PoseStatus::kRegistered);
+  state.scans.front().pose.reset();
+  Statement s = statement_of(state, false, Language::kEnglish);
+  EXPECT_EQ(s.headline, "A scan is not judged yet: Finish judges it");
+  EXPECT_TRUE(s.may_finish);
+  EXPECT_FALSE(s.may_scan);
+  EXPECT_FALSE(s.may_sign);
+  state = with_scan(PoseStatus::kRegistered);
+  state.red_map = map_with(12.5);
+  s = statement_of(state, false, Language::kEnglish);
+  EXPECT_EQ(s.headline, "Choose a scanner");
+  EXPECT_THAT(s.detail, HasSubstr("12.5 mm² are still red: scan on."));
+  EXPECT_TRUE(s.may_sign) << "as incomplete, with the reason";
+  EXPECT_FALSE(s.may_scan);
+  state.verdict_kept = false;
+  EXPECT_TRUE(statement_of(state, false, Language::kEnglish).may_finish);
+  state.verdict_kept = true;
+  state.red_map = map_with(0);
+  s = statement_of(state, false, Language::kEnglish);
+  EXPECT_EQ(s.headline, "Conclusive: nothing is missing. Sign it");
+  EXPECT_TRUE(s.may_sign);
+  state.signed_off = true;
+  EXPECT_TRUE(statement_of(state, false, Language::kEnglish).may_pack);
+  // The chooser keeps the headline over what is lost, as it does where there are no scans.
+  state.signed_off = false;
+  state.red_map = map_with(12.5);
+  state.scans.front().damaged = true;
+  s = statement_of(state, false, Language::kEnglish);
+  EXPECT_EQ(s.headline, "Choose a scanner");
+  EXPECT_THAT(s.detail, HasSubstr("Scan 4 is damaged"));
+  EXPECT_EQ(s.tone, Tone::kBad);
+}
+
 TEST(Statement, HandsOffWhileTheScannerWorks) {
   for (const LivePhase phase :
        {LivePhase::kOpening, LivePhase::kMoving, LivePhase::kScanning, LivePhase::kJudging}) {
@@ -131,6 +166,30 @@ TEST(Statement, AnUnsureScanIsToldWithItsReason) {
   EXPECT_EQ(s.headline, "Scan 4 is unsure: scan on, or show same places");
   EXPECT_THAT(s.detail, HasSubstr("The overlap is too small."));
   EXPECT_TRUE(s.may_point);
+}
+
+/// One by one they would be told as scans that went wrong.
+TEST(Statement, AScanOfAGroupApartIsToldWithTheGroup) {
+  LiveState state = with_scan(PoseStatus::kUnsure);
+  state.phase = LivePhase::kWaiting;
+  state.last_not_taken_up = true;
+  auto map = std::make_shared<RedMap>(*map_with(12));
+  map->apart = {{{2, 3}, "scans 2 and 3 fit one another"}};
+  state.red_map = map;
+  EXPECT_THAT(statement_of(state, true, Language::kEnglish).detail, HasSubstr("The overlap is too small."));
+  state.next = NextView{};
+  state.next->say = "turn the top edge towards the camera, 40°";
+  map->apart.push_back({{1, 4}, "scans 1 and 4 fit one another, and not scan 0"});
+  const Statement s = statement_of(state, true, Language::kEnglish);
+  EXPECT_EQ(s.headline, "Scan 4 is unsure: scan on, or show same places");
+  EXPECT_THAT(s.detail, HasSubstr("Scans 1 and 4 fit one another, and not scan 0."));
+  EXPECT_THAT(s.detail, ::testing::Not(HasSubstr("The overlap is too small.")));
+  EXPECT_THAT(s.detail, ::testing::Not(HasSubstr("top edge"))) << "two ways to turn it";
+  state.next->placement = Placement{};
+  EXPECT_THAT(statement_of(state, true, Language::kEnglish).detail, HasSubstr("top edge")) << "motors go";
+  state.phase = LivePhase::kStill;
+  EXPECT_THAT(statement_of(state, true, Language::kEnglish).detail,
+              HasSubstr("Scans 2 and 3 fit one another."));
 }
 
 /// What motors do is not asked of the operator.

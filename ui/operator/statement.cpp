@@ -82,8 +82,8 @@ void add_damaged_taken_out(Statement& out, const LiveState& state, Language lang
 }
 
 /// What of the session is damaged, lost or void: on every opening, and before anything is signed. What ended
-/// a run, and a scanner that is still to be chosen, keep the headline.
-void say_faults(Statement& out, const LiveState& state, bool has_device, bool conclusive, Language language) {
+/// a run, and a scanner that is still to be chosen, keep the headline: it is not free then.
+void say_faults(Statement& out, const LiveState& state, bool is_free, bool conclusive, Language language) {
   const std::string damaged = damaged_scans(state);
   const std::string may_be_out = scans_of_lost_records(state);
   std::string said;
@@ -99,7 +99,6 @@ void say_faults(Statement& out, const LiveState& state, bool has_device, bool co
   if (!may_be_out.empty()) {
     add_sentence(said, filled(text_of(Text::kMayBeTakenOut, language), may_be_out));
   }
-  const bool is_free = !state.error && has_device;
   if (!damaged.empty()) {
     const bool is_one = damaged.find(',') == std::string::npos;
     const std::string line =
@@ -180,9 +179,21 @@ std::string what_is_next(const NextView& next, Language language) {
   return said;
 }
 
+/// The group that the scan is of, which fits nothing of the model; null where it is of none.
+const GroupApart* group_of(const LiveState& state, int scan) {
+  if (!state.red_map) {
+    return nullptr;
+  }
+  const auto found = std::ranges::find_if(state.red_map->apart, [scan](const GroupApart& group) {
+    return std::ranges::find(group.ids, scan) != group.ids.end();
+  });
+  return found != state.red_map->apart.end() ? &*found : nullptr;
+}
+
 /// The last scan is not taken up: it was set aside, or it lies nowhere for certain. False where it does.
 bool say_not_taken_up(Statement& out, const LiveState& state, Language language) {
   const LiveScan* last = newest_standing(state);
+  const GroupApart* group = nullptr;
   if (!state.scans.empty() && state.scans.back().set_aside) {
     const LiveScan& aside = state.scans.back();
     out.headline = filled(text_of(Text::kSetAsideScan, language), aside.id);
@@ -190,12 +201,14 @@ bool say_not_taken_up(Statement& out, const LiveState& state, Language language)
   } else if (last != nullptr && last->pose && last->pose->status != PoseStatus::kRegistered) {
     const bool failed = last->pose->status == PoseStatus::kFailed;
     out.headline = filled(text_of(failed ? Text::kFailedScan : Text::kUnsureScan, language), last->id);
-    out.detail = sentence(last->pose->reason, language);
+    group = group_of(state, last->id);
+    out.detail = sentence(group != nullptr ? group->say : last->pose->reason, language);
     out.may_point = true;
   } else {
     return false;
   }
-  if (state.next) {
+  // How to turn it for more of what is red is not how to join the group, but motors go there.
+  if (state.next && (group == nullptr || state.next->placement)) {
     add_sentence(out.detail, what_is_next(*state.next, language));
   }
   return true;
@@ -252,7 +265,8 @@ void say_still(Statement& out, const LiveState& state, bool has_device, Wording 
   const std::string broken_off = state.broken_off_rows > 0
                                      ? filled(text_of(Text::kBrokenOff, language), state.broken_off_rows)
                                      : std::string();
-  out.may_scan = has_device;
+  const std::string choose = text_of(Text::kChooseDevice, language);
+  out.may_scan = has_device;  // without one, what was scanned elsewhere is judged, signed and packed
   const std::string unjudged = any ? unjudged_line(state, language) : std::string();
   const bool conclusive =
       any && state.red_map && state.red_map->conclusive && state.verdict_kept && unjudged.empty();
@@ -272,8 +286,8 @@ void say_still(Statement& out, const LiveState& state, bool has_device, Wording 
     if (!unjudged.empty()) {
       add_sentence(out.detail, unjudged + ".");
     }
-  } else if (!has_device) {
-    out.headline = text_of(Text::kChooseDevice, language);
+  } else if (!any && !has_device) {
+    out.headline = choose;
     out.tone = Tone::kAsk;
   } else if (!any) {
     out.headline = text_of(Text::kLayTablet, language);
@@ -312,14 +326,21 @@ void say_still(Statement& out, const LiveState& state, bool has_device, Wording 
   } else {
     // A map that knows of no red yet is one of scans that are not judged.
     const double red = state.red_map && !state.red_map->conclusive ? red_mm2(*state.red_map) : 0.0;
-    out.headline = red > 0 ? filled(text_of(Text::kStillRed, wording), area_words(red, language))
-                           : filled(text_of(Text::kStoredScans, language), state.scans.size());
+    const std::string still = red > 0 ? filled(text_of(Text::kStillRed, wording), area_words(red, language))
+                                      : filled(text_of(Text::kStoredScans, language), state.scans.size());
+    out.headline = has_device ? still : choose;
+    out.detail = has_device ? std::string() : still + ".";
     out.tone = Tone::kAsk;
     out.scan_label = Text::kGoOn;
     // As incomplete, with the reason.
     out.may_sign = state.red_map != nullptr && state.verdict_kept;
     out.may_finish = lacks_verdict(state);
-    out.detail = broken_off;
+    if (!broken_off.empty()) {
+      add_sentence(out.detail, broken_off);
+    }
+    if (state.red_map && !state.red_map->apart.empty()) {  // before more of either side is scanned
+      add_sentence(out.detail, sentence(state.red_map->apart.front().say, language));
+    }
     if (is_driven(state)) {  // whatever is next, the run begins with a scan of how the tablet lies
       add_sentence(out.detail, text_of(Text::kFirstAsItLies, language));
     } else if (const std::string turn = by_hand(state, language); !turn.empty()) {
@@ -328,7 +349,7 @@ void say_still(Statement& out, const LiveState& state, bool has_device, Wording 
     add_warnings(out, state, language);
     add_damaged_taken_out(out, state, language);
   }
-  say_faults(out, state, has_device, conclusive, language);
+  say_faults(out, state, !state.error && out.headline != choose, conclusive, language);
 }
 
 }  // namespace

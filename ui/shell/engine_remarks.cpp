@@ -9,6 +9,18 @@ namespace dubsar::ui {
 namespace {
 
 constexpr EnginePhrase kRemarks[] = {
+    // scans whose poses the mesh does not agree with
+    {" overlaps no other scan where its pose puts it; look whether that pose is right",
+     " überdeckt keinen anderen Scan, wo seine Lage ihn hinstellt; prüfen, ob diese Lage stimmt"},
+    {" pairs of scans lie apart where they overlap, by up to ",
+     " Paaren von Scans liegen auseinander, wo sie sich überdecken, um bis zu "},
+    {" mm apart where they overlap, ", " mm auseinander, wo sie sich überdecken, "},
+    {"more than noise explains; the mesh is less reliable, and may have a scan where the others fit it, not "
+     "where its pose puts it; register them again",
+     "mehr als das Rauschen erklärt; das Netz ist weniger verlässlich und hat einen Scan vielleicht dort, wo "
+     "die anderen zu ihm passen, nicht wo seine Lage ihn hinstellt; neu registrieren"},
+    {"; at fault seem: ", "; schuld sind wohl: "},
+    {" mm off)", " mm daneben)"},
     // what the reading of a scan remarks
     {" bytes follow what the header tells of and are passed over; export it again if something is missing",
      " Bytes folgen auf das, was der Kopf angibt, und werden übergangen; neu ausgeben, wenn etwas fehlt"},

@@ -114,8 +114,11 @@ constexpr EnginePhrase kPhrases[] = {
      "die Überlappung ist zu eben: der Scan kann sich darauf drehen"},
     {"the overlap is too even: the scan can slide on it",
      "die Überlappung ist zu eben: der Scan kann darauf gleiten"},
-    {"; scan again with an edge or more relief in the overlap, or use pins",
-     "; neu scannen, mit einer Kante oder mehr Relief in der Überlappung, oder mit Nadeln"},
+    {"; scan again with an edge or more relief in the overlap",
+     "; neu scannen, mit einer Kante oder mehr Relief in der Überlappung"},
+    {", or use pins", ", oder mit Nadeln"},
+    {"; its pins, put back by hand, hold it no better",
+     "; seine Nadeln, von Hand zurückgestellt, halten ihn nicht besser"},
     {"two poses fit, ", "zwei Lagen passen, um "},
     {" degrees apart; click one point on both scans",
      " Grad verschieden; eine Stelle in beiden Scans anklicken"},
@@ -125,14 +128,27 @@ constexpr EnginePhrase kPhrases[] = {
      "nichts darin gleicht den eingepassten Scans; mit mindestens 30 % Überlappung neu scannen, oder drei "
      "Stellen in beiden Scans anklicken"},
     {"too little is written or broken in the overlap to tell this pose from others; scan again with more "
-     "overlap, use pins, or click one point on both scans",
+     "overlap",
      "in der Überlappung ist zu wenig geschrieben oder gebrochen, um diese Lage von anderen zu "
      "unterscheiden; "
-     "mit mehr Überlappung neu scannen, Nadeln nehmen, oder eine Stelle in beiden Scans anklicken"},
+     "mit mehr Überlappung neu scannen"},
+    {", use pins", ", Nadeln nehmen"},
+    {", or click one point on both scans", ", oder eine Stelle in beiden Scans anklicken"},
     {"it fits other scans, but not the largest group; scan what connects them, with at least 30 % overlap, "
      "or take it out where it is of another tablet",
      "er passt zu anderen Scans, aber nicht zur größten Gruppe; scannen, was sie verbindet, mit mindestens "
      "30 % Überlappung, oder ihn herausnehmen, wenn er von einer anderen Tafel ist"},
+    {" fit one another, and not ", " passen zueinander, und nicht zu "},
+    {"; to join them lay the tablet as for scan ", "; um sie zu verbinden, die Tafel hinlegen wie bei Scan "},
+    {", scan, and scan twice more, each time turned on by 45° over that edge",
+     ", scannen, und noch zweimal scannen, jedes Mal um 45° weiter über diesen Rand gedreht"},
+    {"; to join them scan the edge between them, held so that both sides are in view",
+     "; um sie zu verbinden, den Rand zwischen ihnen scannen, so gehalten, dass beide Seiten zu sehen sind"},
+    {"; or scan both sides again with the same pins standing, or click three places that a scan of each "
+     "shows; take out what is of another tablet",
+     "; oder beide Seiten mit denselben stehenden Nadeln neu scannen, oder drei Stellen anklicken, die je "
+     "ein "
+     "Scan von beiden zeigt; herausnehmen, was von einer anderen Tafel ist"},
     {"it connects scans that contradict each other; one of them moved while it was scanned, or lies wrong: "
      "take "
      "that one out, or scan again what connects them",
@@ -366,6 +382,7 @@ constexpr EnginePhrase kPhrases[] = {
     {"planning was stopped", "die Planung wurde abgebrochen"},
     {"the analysis was stopped", "die Auswertung wurde abgebrochen"},
     {"writing was stopped", "das Schreiben wurde abgebrochen"},
+    {"reading was stopped", "das Lesen wurde abgebrochen"},
     {"stitching was stopped", "das Zusammenfügen wurde abgebrochen"},
     {"stopped while finding wedges", "beim Finden der Keile angehalten"},
     // where nothing is written
