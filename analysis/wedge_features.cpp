@@ -43,10 +43,6 @@ Quantiles quantiles_of(std::vector<double> values) {
 
 enum class AnglesOf { kAll, kReadable };
 
-bool has_readable_angles(const Wedge& wedge) {
-  return wedge.intact >= kLeastIntact && wedge.roundness <= kMostRoundness;
-}
-
 WedgeProfile profile_of(std::optional<Face> side, const std::vector<const Wedge*>& wedges, AnglesOf angles) {
   WedgeProfile profile;
   profile.side = side;
@@ -104,6 +100,10 @@ WedgeFeatures wedge_features(const Wedge& wedge) {
   }
   f[4] = deg_from_rad(wedge.edge_slopes_rad[d]);
   return f;
+}
+
+bool has_readable_angles(const Wedge& wedge) {
+  return wedge.intact >= kLeastIntact && wedge.roundness <= kMostRoundness;
 }
 
 std::vector<float> comparable(const Wedge& wedge) {

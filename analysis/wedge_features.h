@@ -34,6 +34,8 @@ using WedgeFeatures = std::array<double, kWedgeFeatures.size()>;
 [[nodiscard]] std::vector<WedgeProfile> make_read_profiles(const std::vector<Wedge>& wedges);
 inline constexpr double kLeastIntact = 0.8;
 inline constexpr double kMostRoundness = 0.02;
+/// Whether this is such a wedge.
+[[nodiscard]] bool has_readable_angles(const Wedge& wedge);
 
 /// Quantiles of all features of these wedges on their comparable scales, of comparable() of each: the L1
 /// distance of two is the mean distance that the one's wedges would have to be shifted by to be distributed

@@ -4,8 +4,10 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <utility>
 #include <vector>
 
+#include "formats/filed_mesh.h"
 #include "formats/mesh_formats.h"
 
 namespace dubsar {
@@ -123,7 +125,10 @@ void append_polygon(Mesh& mesh, std::span<const std::uint32_t> corners) {
   }
 }
 
-void weld_equal_positions(Mesh& mesh) {
+namespace {
+
+/// [V] the vertex that each becomes.
+std::vector<std::uint32_t> weld(Mesh& mesh) {
   // Open addressing at no more than half load; looked up only, so the order of the table never shows.
   std::vector<std::uint32_t> table(std::bit_ceil(2 * mesh.positions.size() + 2), kEmpty);
   std::vector<std::uint32_t> new_index(mesh.positions.size());
@@ -166,6 +171,27 @@ void weld_equal_positions(Mesh& mesh) {
       corner = new_index[corner];
     }
   }
+  return new_index;
+}
+
+}  // namespace
+
+void weld_equal_positions(Mesh& mesh) {
+  (void)weld(mesh);
+}
+
+FiledMesh welded(Mesh mesh) {
+  FiledMesh out{std::move(mesh)};
+  std::vector<std::uint32_t> vertex_of = weld(out.mesh);
+  out.file_vertices = vertex_of.size();
+  if (vertex_of.size() != out.mesh.positions.size()) {
+    out.vertex_of = std::move(vertex_of);
+  }
+  return out;
+}
+
+Result<Mesh> mesh_of(Result<FiledMesh> filed) {
+  return filed ? Result<Mesh>(std::move(filed->mesh)) : std::unexpected(filed.error());
 }
 
 }  // namespace dubsar

@@ -6,10 +6,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 #include <vector>
 
 #include "core/srgb.h"
 #include "formats/colour_values.h"
+#include "formats/filed_mesh.h"
 #include "formats/gltf_primitive.h"
 #include "formats/mesh_formats.h"
 
@@ -209,6 +211,11 @@ void check_extensions(const JsonNode& root) {
 
 Result<Mesh> decode_mesh_glb(std::string_view bytes, const std::string& where,
                              const MeshReadOptions& options) {
+  return mesh_of(decode_filed_glb(bytes, where, options));
+}
+
+Result<FiledMesh> decode_filed_glb(std::string_view bytes, const std::string& where,
+                                   const MeshReadOptions& options) {
   const Result<GlbChunks> chunks = split_glb(bytes, where);
   if (!chunks) {
     return std::unexpected(chunks.error());
@@ -235,8 +242,9 @@ Result<Mesh> decode_mesh_glb(std::string_view bytes, const std::string& where,
     *options.passed_over = {kTextureCoordinates};
   }
   mesh.colours.resize(mesh.colours.empty() ? 0 : mesh.positions.size(), kWhite);
+  const std::size_t of_file = mesh.positions.size();
   weld_equal_positions(mesh);
-  return mesh;
+  return FiledMesh{std::move(mesh), of_file};
 }
 
 }  // namespace dubsar

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "formats/atomic_file.h"
+#include "formats/filed_mesh.h"
 #include "formats/mesh_formats.h"
 #include "formats/place_precision.h"
 #include "formats/ply_header.h"
@@ -56,17 +57,23 @@ MeshFormat format_of_bytes(std::string_view bytes, const std::filesystem::path& 
   return named == MeshFormat::kUnknown && is_binary_stl(bytes) ? MeshFormat::kStl : named;
 }
 
-Result<Mesh> decode(std::string_view bytes, const std::string& name, const MeshReadOptions& options) {
+Result<FiledMesh> decode(std::string_view bytes, const std::string& name, const MeshReadOptions& options) {
   switch (format_of_bytes(bytes, name)) {
     case MeshFormat::kPly:
-      return decode_mesh_ply(bytes, name, options);
-    case MeshFormat::kObj:
-      return decode_mesh_obj(bytes, name, options);
+      return decode_filed_ply(bytes, name, options);
+    case MeshFormat::kObj: {
+      Result<Mesh> mesh = decode_mesh_obj(bytes, name, options);
+      if (!mesh) {
+        return std::unexpected(mesh.error());
+      }
+      const std::size_t count = mesh->positions.size();
+      return FiledMesh{*std::move(mesh), count};
+    }
     case MeshFormat::kStl:
-      return decode_mesh_stl(bytes, name, options);
+      return decode_filed_stl(bytes, name, options);
     case MeshFormat::kGlb:
     case MeshFormat::kDracoGlb:
-      return decode_mesh_glb(bytes, name, options);
+      return decode_filed_glb(bytes, name, options);
     case MeshFormat::kUnknown:
       break;
   }
@@ -99,20 +106,25 @@ Status write_in_pieces(const std::filesystem::path& path, std::string_view text,
 
 Result<Mesh> read_mesh_bytes(std::string_view bytes, const std::string& name,
                              const MeshReadOptions& options) {
+  return mesh_of(read_filed_mesh_bytes(bytes, name, options));
+}
+
+Result<FiledMesh> read_filed_mesh_bytes(std::string_view bytes, const std::string& name,
+                                        const MeshReadOptions& options) {
   if (bytes.empty()) {
     return bad_input(name, "the file is empty", "copy or export it again");
   }
-  Result<Mesh> mesh = decode(bytes, name, options);
+  Result<FiledMesh> read = decode(bytes, name, options);
   if (is_stopped(options.job)) {
     return reading_stopped(name);
   }
-  const bool only_points = mesh && mesh->faces.empty() && options.may_be_points;
-  if (mesh && !only_points) {
-    if (const Status precise = check_precision(*mesh, name); !precise) {
+  const bool only_points = read && read->mesh.faces.empty() && options.may_be_points;
+  if (read && !only_points) {
+    if (const Status precise = check_precision(read->mesh, name); !precise) {
       return std::unexpected(precise.error());
     }
   }
-  return mesh;
+  return read;
 }
 
 Result<Mesh> read_mesh(const std::filesystem::path& path, const MeshReadOptions& options) {

@@ -4,6 +4,7 @@
 #include <array>
 #include <atomic>
 #include <cmath>
+#include <utility>
 
 #include "core/log.h"
 #include "core/number_text.h"
@@ -11,6 +12,7 @@
 #include "formats/byte_order.h"
 #include "formats/bytes_left_over.h"
 #include "formats/colour_values.h"
+#include "formats/filed_mesh.h"
 #include "formats/mesh_formats.h"
 #include "formats/ply_body.h"
 #include "formats/ply_passed_over.h"
@@ -286,6 +288,11 @@ Status read_faces(PlyBody& body, const PlyElement& face, std::uint64_t vertices,
 
 Result<Mesh> decode_mesh_ply(std::string_view bytes, const std::string& where,
                              const MeshReadOptions& options) {
+  return mesh_of(decode_filed_ply(bytes, where, options));
+}
+
+Result<FiledMesh> decode_filed_ply(std::string_view bytes, const std::string& where,
+                                   const MeshReadOptions& options) {
   const Result<PlyHeader> header = parse_ply_header(bytes, where);
   if (!header) {
     return std::unexpected(header.error());
@@ -338,9 +345,10 @@ Result<Mesh> decode_mesh_ply(std::string_view bytes, const std::string& where,
     log_warning(Error{ErrorKind::kBadInput, left_over, where, {}}.line());
   }
   if (has_texture_places(*vertex) && !mesh.faces.empty()) {
-    weld_equal_positions(mesh);
+    return welded(std::move(mesh));
   }
-  return mesh;
+  const std::size_t count = mesh.positions.size();
+  return FiledMesh{std::move(mesh), count};
 }
 
 }  // namespace dubsar

@@ -3,11 +3,13 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
+#include <utility>
 #include <vector>
 
 #include "core/log.h"
 #include "formats/byte_order.h"
 #include "formats/bytes_left_over.h"
+#include "formats/filed_mesh.h"
 #include "formats/mesh_formats.h"
 #include "formats/text_scanner.h"
 
@@ -174,14 +176,21 @@ bool is_binary_stl(std::string_view bytes) {
 
 Result<Mesh> decode_mesh_stl(std::string_view bytes, const std::string& where,
                              const MeshReadOptions& options) {
+  return mesh_of(decode_filed_stl(bytes, where, options));
+}
+
+Result<FiledMesh> decode_filed_stl(std::string_view bytes, const std::string& where,
+                                   const MeshReadOptions& options) {
   const double mm = options.mm_per_unit.value_or(1.0);
   const std::string_view text = without_byte_order_mark(bytes);
   Result<Mesh> mesh =
       is_ascii_stl(text) ? AsciiReader(text, where, mm, options.job).mesh() : decode_binary(bytes, where, mm);
-  if (mesh) {
-    weld_equal_positions(*mesh);
+  if (!mesh) {
+    return std::unexpected(mesh.error());
   }
-  return mesh;
+  const std::size_t corners = mesh->positions.size();
+  weld_equal_positions(*mesh);
+  return FiledMesh{*std::move(mesh), corners};
 }
 
 std::string encode_mesh_stl(const Mesh& mesh, const FileLabel& label) {

@@ -15,7 +15,7 @@ namespace dubsar {
 
 namespace {
 
-constexpr std::string_view kMagic = "DUBSIDX4";
+constexpr std::string_view kMagic = "DUBSIDX5";
 constexpr std::size_t kHeadBytes = 16;  // magic, digest of all that follows
 constexpr std::uint32_t kMostColumns = 4096;
 
@@ -89,6 +89,7 @@ IndexedTablet read_tablet(Reader& from) {
   t.stamp = {from.value<std::uint64_t>(), from.value<std::uint64_t>(), from.value<std::uint64_t>(),
              from.value<std::int64_t>(), from.value<std::int64_t>()};
   t.complaint = from.text();
+  t.method = from.value<std::int32_t>();
   t.ids = from.all<std::int32_t>();
   t.digests = from.all<std::uint64_t>();
   t.features = from.all<float>();
@@ -131,6 +132,7 @@ std::string search_index_to_bytes(const SearchIndex& index) {
     append(body, t.stamp.modified_ns);
     append(body, t.stamp.changed_ns);
     put_text(body, t.complaint);
+    append(body, t.method);
     put_all(body, t.ids);
     put_all(body, t.digests);
     put_all(body, t.features);

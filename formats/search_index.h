@@ -30,6 +30,7 @@ struct IndexedTablet {
   std::string name;                    ///< path below the folder
   FileStamp stamp;                     ///< all zero: to be read again
   std::string complaint;               ///< why it is no wedges.json; then all below is empty
+  std::int32_t method = 0;             ///< WedgeFile::method; 0: it says none
   std::vector<int> ids;                ///< [W] of its wedges
   std::vector<std::uint64_t> digests;  ///< [W] wedge_digest()
   std::vector<float> features;         ///< [W × columns], comparable

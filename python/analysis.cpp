@@ -12,6 +12,7 @@
 #include "python/file_text.h"
 #include "python/jobs.h"
 #include "station/outward_faces.h"
+#include "station/wedge_doubts.h"
 
 namespace dubsar::python {
 
@@ -53,6 +54,12 @@ Result<std::vector<std::string>> make_measurable(std::shared_ptr<const Mesh>& me
   return doubts;
 }
 
+void warn_of_doubts(const std::vector<Error>& doubts) {
+  for (const Error& doubt : doubts) {
+    warn_of_mesh(doubt.line());
+  }
+}
+
 WedgesPointer analyze(const std::shared_ptr<Mesh>& mesh, const std::string& exit, const py::str& name_text,
                       const py::object& progress) {
   const std::string name = bytes_of(name_text);
@@ -72,6 +79,7 @@ WedgesPointer analyze(const std::shared_ptr<Mesh>& mesh, const std::string& exit
       run_for_result(progress, [&](JobContext& job) { return analyze_mesh(*measured, options, job); });
   auto out = std::make_shared<Wedges>();
   out->file = wedge_file(name, options, analysis);
+  warn_of_doubts(doubts_of(out->file, name, analysis.fields.body_count()));
   out->mesh = std::move(measured);
   out->analysis = std::make_shared<const Analysis>(std::move(analysis));
   return out;
@@ -135,6 +143,9 @@ void bind_analysis(py::module_& module) {
             return w.file.text_from_model ? py::object(matrix_of(*w.file.text_from_model)) : py::none();
           },
           "[4, 4]: x to the reader's right, y up the obverse, z out of it; or None")
+      .def_property_readonly(
+          "text_certainty", [](const Wedges& w) { return w.file.text_certainty; },
+          "0 to 1: how clearly the wedges show a direction of writing; below 0.1 they may be none")
       .def_property_readonly("timings_s",
                              [](const Wedges& w) {
                                py::dict out;
@@ -166,6 +177,7 @@ void bind_analysis(py::module_& module) {
       [](const fs::path& path) {
         auto out = std::make_shared<Wedges>();
         out->file = value_of(read_wedges(path));
+        warn_of_doubts(doubts_of(out->file, path.string()));
         return out;
       },
       py::arg("path"), "A wedges.json.");

@@ -4,7 +4,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -12,7 +11,6 @@
 #include "analysis/text_frame.h"
 #include "analysis/wedge_features.h"
 #include "core/log.h"
-#include "core/order_statistics.h"
 #include "core/parallel.h"
 #include "station/results.h"
 
@@ -25,12 +23,6 @@ using Rgb = std::array<std::uint8_t, 3>;
 constexpr Rgb kClay = {196, 176, 148};
 constexpr Rgb kHollow = {150, 158, 172};
 constexpr Rgb kBorder = {52, 84, 160};
-
-/// Wedges of simulated tablets are 0.3 to 0.5 mm deep; docs/scholars/measurements.md has how many of them are
-/// found at which spacing.
-constexpr double kCoarseMm = 0.14;
-constexpr double kSpacingsToADepth = 3.5;
-constexpr std::size_t kFewestLarge = 10;
 
 /// A colour of its own for each number: hues by the golden ratio, so that neighbours differ.
 Rgb colour_of(std::int32_t number, std::int8_t face) {
@@ -79,49 +71,10 @@ void correct_analysis(const Mesh& mesh, const AnalysisOptions& options, Analysis
   place_wedges(analysis->text, &analysis->set.wedges);
 }
 
-void warn_of_bodies(const Analysis& analysis, const std::string& where) {
-  if (const std::size_t bodies = analysis.fields.body_count(); bodies > 1) {
-    log_warning(fmt::format(
-        "{}: {} bodies in one mesh: each is measured as if it were alone, and place.body tells them apart; "
-        "which "
-        "side is which is told of all together: give each a file of its own where they do not lie alike",
-        where, bodies));
-  }
-}
-
-std::optional<std::string> no_text(std::size_t wedges, double text_certainty) {
-  if (wedges == 0 || text_certainty >= kCertainText) {
-    return std::nullopt;
-  }
-  return fmt::format(
-      "no direction of writing shows in the {} that {} found: confidence was learnt on inscribed tablets, "
-      "and "
-      "hollows of rough clay may pass for wedges: look at them before you count them",
-      wedges == 1 ? "one wedge" : fmt::format("{} wedges", wedges), wedges == 1 ? "was" : "were");
-}
-
 void warn_of_lost(const Analysis& analysis, const std::string& where) {
   for (const LostCorrection& lost : analysis.set.lost) {
     log_warning(fmt::format("{}: correction {} is not made: {}", where, lost.index + 1, lost.reason));
   }
-}
-
-std::optional<Error> too_coarse(const Analysis& analysis, const std::string& where) {
-  const double spacing_mm = mean_spacing_mm(analysis.findings.area_mm2);
-  std::vector<double> depths;
-  for (const Wedge& wedge : analysis.set.wedges) {
-    depths.push_back(wedge.depth_mm);
-  }
-  const bool large =
-      depths.size() >= kFewestLarge && median_of(std::move(depths)) > kSpacingsToADepth * spacing_mm;
-  if (spacing_mm <= kCoarseMm || large) {
-    return std::nullopt;
-  }
-  return Error{ErrorKind::kBadInput,
-               fmt::format("too coarse for wedges of the usual size, many or all of them are missed: "
-                           "its spacing is {:.2f} mm",
-                           spacing_mm),
-               where, "scan it, or export it, at 0.1 mm or finer"};
 }
 
 WedgeFile wedge_file(std::string mesh_name, const AnalysisOptions& options, const Analysis& analysis) {

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <cstdint>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -41,18 +40,8 @@ struct Analysis {
 /// corrections that cannot be made are in set.lost.
 void correct_analysis(const Mesh& mesh, const AnalysisOptions& options, Analysis* analysis);
 
-/// A line of the log where the mesh holds several bodies.
-void warn_of_bodies(const Analysis& analysis, const std::string& where);
-
-/// What there is to say where wedges were found and no text runs through them.
-[[nodiscard]] std::optional<std::string> no_text(std::size_t wedges, double text_certainty);
-
 /// A line of the log for each correction that could not be made.
 void warn_of_lost(const Analysis& analysis, const std::string& where);
-
-/// What there is to say where the mesh is too coarse for wedges of the usual size, and those that were found,
-/// if any, are not larger ones.
-[[nodiscard]] std::optional<Error> too_coarse(const Analysis& analysis, const std::string& where);
 
 /// wedges.json of it; the wedges themselves are taken out of `analysis`.
 [[nodiscard]] WedgeFile wedge_file(std::string mesh_name, const AnalysisOptions& options,

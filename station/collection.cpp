@@ -75,6 +75,7 @@ IndexedTablet read_tablet(const fs::path& path, const std::string& name, std::ch
     tablet.complaint = is_of_another_kind(path) ? std::string(kNoWedgesJson) : error.line();
     return tablet;
   }
+  tablet.method = file->method;
   for (const Wedge& wedge : file->wedges) {
     tablet.ids.push_back(wedge.id);
     tablet.digests.push_back(wedge_digest(wedge));
@@ -211,6 +212,21 @@ bool Collection::plant(bool anew) {
     index_.tablet_tree = tablets_->tree();
   }
   return made;
+}
+
+OtherMethods Collection::measured_otherwise(int method) const {
+  OtherMethods out;
+  for (const IndexedTablet& tablet : index_.tablets) {
+    if (tablet.ids.empty()) {
+      continue;
+    }
+    ++out.searched;
+    if (tablet.method != method) {
+      out.first = out.others == 0 ? &tablet : out.first;
+      ++out.others;
+    }
+  }
+  return out;
 }
 
 std::vector<SimilarWedge> Collection::similar_wedges(const Wedge& wedge, std::size_t count) const {

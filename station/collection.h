@@ -30,6 +30,13 @@ struct SimilarTablet {
   double distance = 0;  ///< mean shift between the feature distributions, in scatters of one hand
 };
 
+/// Of the tablets that are searched, those whose wedges were measured in another way (WedgeFile::method).
+struct OtherMethods {
+  std::size_t searched = 0;              ///< tablets with wedges
+  std::size_t others = 0;                ///< of these
+  const IndexedTablet* first = nullptr;  ///< in name order; null: there is none
+};
+
 /// What IndexedTablet::complaint says of a .json that never was a wedges.json: no more than that.
 inline constexpr std::string_view kNoWedgesJson = "no wedges.json";
 
@@ -60,6 +67,9 @@ class Collection {
   [[nodiscard]] const std::vector<UnreadPlace>& unread() const { return unread_; }
   /// As AnalysedFiles has them.
   [[nodiscard]] const std::vector<std::string>& lost_sessions() const { return lost_sessions_; }
+
+  /// What is not to be compared with wedges of this method.
+  [[nodiscard]] OtherMethods measured_otherwise(int method) const;
 
   /// The wedges most like this one; the wedge itself, where it is in the collection, is left out.
   [[nodiscard]] std::vector<SimilarWedge> similar_wedges(const Wedge& wedge, std::size_t count) const;

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <string>
+#include <vector>
 
 #include "analysis/body_fields.h"
 #include "analysis/curvature.h"
@@ -33,6 +34,18 @@ Status write_coloured(const fs::path& folder, const std::string& name, const Mes
     return written;
   }
   return write_six_view_picture(folder / (name + ".png"), coloured, tablet_from_model, job);
+}
+
+/// [lines × per_vertex], of the vertex that each line is of.
+std::vector<float> by_line(const std::vector<float>& value, std::size_t per_vertex,
+                           const std::vector<std::uint32_t>& vertex_of) {
+  std::vector<float> out;
+  out.reserve(vertex_of.size() * per_vertex);
+  for (const std::uint32_t v : vertex_of) {
+    const auto first = value.begin() + static_cast<std::ptrdiff_t>(v * per_vertex);
+    out.insert(out.end(), first, first + static_cast<std::ptrdiff_t>(per_vertex));
+  }
+  return out;
 }
 
 /// Both have normals and nothing else beside.
@@ -91,7 +104,8 @@ Status write_field_pictures(const fs::path& folder, const Mesh& mesh, const Rigi
 
 Status write_invariants(const fs::path& mat, const fs::path& picture_folder, const Mesh& mesh,
                         const RigidTransform& tablet_from_model, const SurfaceFields& fields,
-                        const IntegralInvariantOptions& options, const JobContext& job) {
+                        const IntegralInvariantOptions& options, const std::vector<std::uint32_t>& vertex_of,
+                        const JobContext& job) {
   const IntegralInvariants invariants =
       invariants_of_bodies(mesh, fields.body_of, outlook_of(mesh, fields), fields.mean_edge_mm, options, job);
   if (job.cancelled()) {
@@ -102,7 +116,15 @@ Status write_invariants(const fs::path& mat, const fs::path& picture_folder, con
   for (const float r : invariants.radii_mm) {
     comment += fmt::format(" {:g}", r);
   }
-  if (const Status written = write_feature_mat(mat, invariants.value, invariants.radii_mm.size(), comment);
+  const std::size_t per_vertex = invariants.radii_mm.size();
+  std::vector<float> lines;
+  if (!vertex_of.empty()) {
+    lines = by_line(invariants.value, per_vertex, vertex_of);
+    comment += fmt::format("\nvertices: the {} of the mesh's file, which are {} places", vertex_of.size(),
+                           mesh.positions.size());
+  }
+  if (const Status written =
+          write_feature_mat(mat, vertex_of.empty() ? invariants.value : lines, per_vertex, comment);
       !written || picture_folder.empty()) {
     return written;
   }

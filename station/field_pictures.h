@@ -2,7 +2,9 @@
 // Copyright The Dubsar developers
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
+#include <vector>
 
 #include "analysis/integral_invariants.h"
 #include "analysis/surface_fields.h"
@@ -29,10 +31,12 @@ inline constexpr const char* kColoured = "Coloured by Dubsar";
                                           const SurfaceFields& fields, const JobContext& job);
 
 /// Multi-scale integral invariants of every vertex, into GigaMesh's .mat; with a folder also
-/// invariants.ply and invariants.png there, valleys red and ridges blue by the strongest response.
+/// invariants.ply and invariants.png there, valleys red and ridges blue by the strongest response. vertex_of:
+/// of which vertex of the mesh each line is (FiledMesh::vertex_of); empty: of each, in their order.
 [[nodiscard]] Status write_invariants(const std::filesystem::path& mat,
                                       const std::filesystem::path& picture_folder, const Mesh& mesh,
                                       const RigidTransform& tablet_from_model, const SurfaceFields& fields,
-                                      const IntegralInvariantOptions& options, const JobContext& job);
+                                      const IntegralInvariantOptions& options,
+                                      const std::vector<std::uint32_t>& vertex_of, const JobContext& job);
 
 }  // namespace dubsar

@@ -191,6 +191,7 @@ void MeshViewing::take_mesh(std::shared_ptr<const Mesh> mesh, const RigidTransfo
     ++state_.number;
     state_.fields.clear();
     state_.wedges.reset();
+    state_.doubts.clear();
     forget_section();
     state_.selections = std::make_shared<const std::vector<MeshSelection>>();
     state_.written.clear();
@@ -216,11 +217,6 @@ void MeshViewing::take_field(MeshField field, std::vector<float> values) {
   if (state_.mesh && values.size() == state_.mesh->positions.size()) {
     state_.fields[field] = std::make_shared<const std::vector<float>>(std::move(values));
   }
-}
-
-void MeshViewing::take_wedges(std::vector<Wedge> wedges) {
-  const std::scoped_lock lock(mutex_);
-  state_.wedges = std::make_shared<const std::vector<Wedge>>(std::move(wedges));
 }
 
 void MeshViewing::open(const fs::path& file) {
@@ -387,7 +383,7 @@ void MeshViewing::work_out_everything(bool with_invariant) {
                                                        outlook_of(*shown, analysis_->fields),
                                                        analysis_->fields.mean_edge_mm, {}, *job_)));
   }
-  take_wedges(analysis_->set.wedges);
+  take_measured_wedges();
 }
 
 }  // namespace dubsar

@@ -37,6 +37,7 @@ struct ViewedMesh {
   std::uint64_t number = 0;  ///< grows whenever the mesh is another one
   std::map<MeshField, std::shared_ptr<const std::vector<float>>> fields;  ///< [V]
   std::shared_ptr<const std::vector<Wedge>> wedges;                       ///< null: none are known
+  std::vector<Error> doubts;  ///< doubts_of() these wedges, of no place: it is the mesh that is looked at
   std::shared_ptr<const CrossSection> section;  ///< the last that was asked for; else null
   bool section_due = false;                     ///< one is asked for and neither there nor given up
   std::shared_ptr<const std::vector<MeshSelection>> selections;  ///< that are kept; never null
@@ -110,7 +111,9 @@ class MeshViewing {
   void take_written(std::vector<std::filesystem::path> files);
   void change_selections(const std::function<void(std::vector<MeshSelection>&)>& change);
   void take_field(MeshField field, std::vector<float> values);
-  void take_wedges(std::vector<Wedge> wedges);
+  /// With what there is to doubt in them; `bodies` as doubts_of() has them.
+  void take_wedges(WedgeFile found, std::size_t bodies = 0);
+  void take_measured_wedges();
   void complain(const Error& error);
   void work_out(MeshField field);
   void work_out_everything(bool with_invariant);

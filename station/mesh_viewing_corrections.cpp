@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright The Dubsar developers
-// What a person says of the wedges of the mesh that is looked at.
+// The wedges of the mesh that is looked at: what is to be doubted in them, and what a person says of them.
+#include <memory>
 #include <utility>
 
 #include "formats/corrections_json.h"
@@ -9,10 +10,22 @@
 #include "station/correction_region.h"
 #include "station/mesh_viewing.h"
 #include "station/place_outside.h"
+#include "station/wedge_doubts.h"
 
 namespace dubsar {
 
 namespace fs = std::filesystem;
+
+void MeshViewing::take_wedges(WedgeFile found, std::size_t bodies) {
+  std::vector<Error> doubts = doubts_of(found, {}, bodies);
+  const std::scoped_lock lock(mutex_);
+  state_.wedges = std::make_shared<const std::vector<Wedge>>(std::move(found.wedges));
+  state_.doubts = std::move(doubts);
+}
+
+void MeshViewing::take_measured_wedges() {
+  take_wedges(wedge_file({}, analysis_options_, *analysis_), analysis_->fields.body_count());
+}
 
 /// The wedges as they were measured, and corrected as they were: measured again when that was later.
 void MeshViewing::take_corrections(const fs::path& wedges_file, bool in_session) {
@@ -47,9 +60,10 @@ void MeshViewing::take_corrections(const fs::path& wedges_file, bool in_session)
   analysis_options_.wedges.exits = known->exits;  // what it holds, whatever a stamp of before says
   const bool since =
       count > 0 && fs::last_write_time(corrections_file, error) > fs::last_write_time(wedges_file_, error);
-  take_wedges(std::move(known->wedges));
-  if ((since || count != known->corrections) && measure_all()) {
-    take_wedges(analysis_->set.wedges);
+  const bool is_old = since || count != known->corrections;
+  take_wedges(*std::move(known));
+  if (is_old && measure_all()) {
+    take_measured_wedges();
   }
 }
 
@@ -105,7 +119,7 @@ void MeshViewing::make_corrections(std::vector<WedgeCorrection> corrections, boo
     std::swap(analysis_options_.wedges.corrections, corrections);
     correct_analysis(*shown, analysis_options_, analysis_.get());
   }
-  take_wedges(analysis_->set.wedges);
+  take_measured_wedges();
   if (!written) {
     complain(written.error());
   }

@@ -168,7 +168,7 @@ void MeshViewing::analyse_part(MeshSelection selection, const fs::path& stem) {
     }
     // A part keeps the frame of the whole: its obverse is where the tablet's is.
     take_mesh(part, before.tablet_from_model, mesh_file.filename().string());
-    take_wedges(wedges.wedges);
+    take_wedges(std::move(wedges), analysis->fields.body_count());
     take_field(MeshField::kOpenness, analysis->fields.openness);
     take_field(MeshField::kMeanCurvature, analysis->fields.mean_curvature_per_mm);
     take_field(MeshField::kHeight, analysis->fields.height_mm);

@@ -19,6 +19,7 @@
 #include "station/analysis.h"
 #include "station/session_name.h"
 #include "station/tablet_label.h"
+#include "station/wedge_doubts.h"
 
 namespace dubsar {
 
@@ -96,11 +97,12 @@ Result<std::optional<WedgeFile>> measure_wedges(const Mesh& mesh,
     return std::nullopt;
   }
   warn_of_lost(*analysis, kCorrections);
+  WedgeFile file = wedge_file("../mesh/model.ply", options, *analysis);
   // Who scans so coarsely has chosen to: no warning at every end of a run.
-  if (const std::optional<Error> coarse = too_coarse(*analysis, "mesh/model.ply")) {
+  if (const std::optional<Error> coarse = too_coarse(file, "mesh/model.ply")) {
     log_info(coarse->line());
   }
-  return wedge_file("../mesh/model.ply", options, *analysis);
+  return file;
 }
 
 Result<std::optional<SessionWedges>> keep_wedges(SessionStore& store, const Mesh& mesh,

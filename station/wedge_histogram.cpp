@@ -2,6 +2,8 @@
 // Copyright The Dubsar developers
 #include "station/wedge_histogram.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -9,14 +11,26 @@
 
 namespace dubsar {
 
+namespace {
+
+constexpr const char* kOfReadable = "angles are read where a wedge is known to be whole and sharp";
+constexpr const char* kOfKnown = "of the others the mesh ends before the edge does";
+
+}  // namespace
+
 WedgeHistogram histogram_of(const std::vector<Wedge>& wedges, std::size_t feature, std::size_t bins) {
-  WedgeHistogram out{0, 0, std::vector<float>(bins, 0.0F)};
+  WedgeHistogram out{0, 0, std::vector<float>(bins, 0.0F), {}};
+  const bool is_angle = feature >= kWedgeLengths;
   std::vector<double> values;
   values.reserve(wedges.size());
   for (const Wedge& wedge : wedges) {
-    if (const double value = wedge_features(wedge).at(feature); !std::isnan(value)) {
+    const double value = wedge_features(wedge).at(feature);
+    if (!std::isnan(value) && (!is_angle || has_readable_angles(wedge))) {
       values.push_back(value);
     }
+  }
+  if (values.size() < wedges.size()) {
+    out.note = fmt::format("{} / {}: {}", values.size(), wedges.size(), is_angle ? kOfReadable : kOfKnown);
   }
   if (values.empty() || bins == 0) {
     return out;

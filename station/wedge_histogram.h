@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <string>
 #include <vector>
 
 #include "core/wedge.h"
@@ -15,9 +16,11 @@ struct WedgeHistogram {
   double least = 0;  ///< in the unit that the feature's name says
   double most = 0;
   std::vector<float> bins;
+  std::string note;  ///< of how many wedges it is, and why; empty: of all
 };
 
-/// `feature`: index into kWedgeFeatures. All bins are empty where there is no wedge.
+/// `feature`: index into kWedgeFeatures. Slopes, opening and face angles are those of wedges that they can be
+/// read of (has_readable_angles()). All bins are empty where there is none.
 [[nodiscard]] WedgeHistogram histogram_of(const std::vector<Wedge>& wedges, std::size_t feature,
                                           std::size_t bins);
 

@@ -19,6 +19,7 @@
 #include "formats/mesh_io.h"
 #include "station/analysis.h"
 #include "station/command/analyze.h"
+#include "station/command/mat_lines.h"
 #include "station/command/mesh_unit.h"
 #include "station/command/option_checks.h"
 #include "station/command/outputs.h"
@@ -28,6 +29,7 @@
 #include "station/place_outside.h"
 #include "station/same_tablet.h"
 #include "station/tablet_label.h"
+#include "station/wedge_doubts.h"
 
 namespace dubsar {
 
@@ -66,7 +68,7 @@ Status draw_pictures(const std::filesystem::path& folder, const Mesh& mesh, cons
 }
 
 Status write_extras(const AnalyzeArguments& arguments, const Mesh& mesh, const Analysis& analysis,
-                    const JobContext& job) {
+                    const std::vector<std::uint32_t>& lines, const JobContext& job) {
   if (!arguments.pictures.empty()) {
     if (const Status written = draw_pictures(arguments.pictures, mesh, analysis, job); !written) {
       return written;
@@ -74,7 +76,7 @@ Status write_extras(const AnalyzeArguments& arguments, const Mesh& mesh, const A
   }
   if (!arguments.invariants.empty()) {
     return write_invariants(arguments.invariants, arguments.pictures, mesh, analysis.text.text_from_model,
-                            analysis.fields, {.radius_mm = arguments.radius_mm}, job);
+                            analysis.fields, {.radius_mm = arguments.radius_mm}, lines, job);
   }
   return {};
 }
@@ -105,12 +107,19 @@ Result<std::optional<FileLabel>> label_of_session_of(const std::filesystem::path
   return label ? std::optional(*label) : std::nullopt;
 }
 
+void warn_of_doubts(const std::vector<Error>& doubts) {
+  for (const Error& doubt : doubts) {
+    log_warning(doubt.line());
+  }
+}
+
 /// What was found when it was done before.
 Result<int> tell_done(const AnalyzeArguments& arguments, CommandContext& context) {
   const Result<WedgeFile> file = read_wedges(arguments.out);
   if (!file) {
     return std::unexpected(file.error());
   }
+  warn_of_doubts(doubts_of(*file, arguments.in));
   if (context.json) {
     nlohmann::ordered_json json = summary_json(arguments, *file);
     json["done_before"] = true;
@@ -187,8 +196,9 @@ Status check_corrected(const AnalyzeArguments& arguments, const std::filesystem:
 
 /// Everything but what a person has said, and the stamp when all of it is there. The wedges come last: they
 /// tell how many corrections the outputs have in them.
-Status write_outputs(const AnalyzeArguments& arguments, const WedgeFile& file, const Mesh& mesh,
+Status write_outputs(const AnalyzeArguments& arguments, const WedgeFile& file, const MeshInItsUnit& read,
                      const Analysis& analysis, const StampedWork* work, const JobContext& job) {
+  const Mesh& mesh = read.mesh;
   if (!arguments.mesh_out.empty()) {
     if (Status written = write_mesh(arguments.mesh_out, annotated_mesh(mesh, analysis), file.label);
         !written) {
@@ -204,7 +214,8 @@ Status write_outputs(const AnalyzeArguments& arguments, const WedgeFile& file, c
     }
     drawings = std::move(*drawn);
   }
-  if (Status written = write_extras(arguments, mesh, analysis, job); !written) {
+  if (Status written = write_extras(arguments, mesh, analysis, lines_of_mat(arguments, read), job);
+      !written) {
     return written;
   }
   if (Status written = write_wedges(arguments.out, file); !written) {
@@ -268,15 +279,8 @@ Result<int> analyze(const AnalyzeArguments& arguments, CommandContext& context) 
   if (const Status made = check_corrected(arguments, corrections_file, *analysis); !made) {
     return std::unexpected(made.error());
   }
-  warn_of_bodies(*analysis, arguments.in);
   warn_of_others(arguments, *said, corrections_file);
   warn_of_lost(*analysis, corrections_file.string());
-  if (const auto unwritten = no_text(analysis->set.wedges.size(), analysis->text.certainty)) {
-    log_warning(arguments.in + ": " + *unwritten);
-  }
-  if (const std::optional<Error> coarse = too_coarse(*analysis, arguments.in)) {
-    log_warning(coarse->line());
-  }
   analysis->timings_s.insert(analysis->timings_s.begin(), StageTiming{"reading", reading_s});
   const double took_s = seconds_since(start);
   analysis->timings_s.push_back({"all", took_s});
@@ -285,6 +289,7 @@ Result<int> analyze(const AnalyzeArguments& arguments, CommandContext& context) 
   WedgeFile file = wedge_file(comes_again ? from_folder_of(arguments.in, arguments.out)
                                           : std::filesystem::path(arguments.in).filename().string(),
                               options, *analysis);
+  warn_of_doubts(doubts_of(file, arguments.in, analysis->fields.body_count()));
   file.label = *of_session ? **of_session : read_mesh_label(arguments.in);
   file.unit_assumed = read->unit_assumed;
   if (const Status started = work ? work->start() : Status(); !started) {
@@ -296,7 +301,7 @@ Result<int> analyze(const AnalyzeArguments& arguments, CommandContext& context) 
     }
   }
   if (const Status written =
-          write_outputs(arguments, file, mesh, *analysis, work ? &*work : nullptr, context.job);
+          write_outputs(arguments, file, *read, *analysis, work ? &*work : nullptr, context.job);
       !written) {
     Error error = written.error();
     if (arguments.corrected) {

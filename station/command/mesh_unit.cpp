@@ -14,7 +14,7 @@
 #include "core/number_text.h"
 #include "core/units.h"
 #include "formats/atomic_file.h"
-#include "formats/mesh_io.h"
+#include "formats/filed_mesh.h"
 #include "formats/ply_header.h"
 
 namespace dubsar {
@@ -62,27 +62,27 @@ Result<MeshInItsUnit> read_mesh_in_its_unit(const std::string& file, const std::
     return std::unexpected(bytes.error());
   }
   const auto read_as = [&](std::optional<double> mm) {
-    return read_mesh_bytes(*bytes, file, {.mm_per_unit = mm, .job = &job});
+    return read_filed_mesh_bytes(*bytes, file, {.mm_per_unit = mm, .job = &job});
   };
   MeshInItsUnit out;
-  Result<Mesh> mesh = read_as(unit.empty() ? std::nullopt : mm_per_unit(unit));
-  if (!mesh) {
-    return std::unexpected(mesh.error());
+  Result<FiledMesh> read = read_as(unit.empty() ? std::nullopt : mm_per_unit(unit));
+  if (!read) {
+    return std::unexpected(read.error());
   }
-  const double across_mm = size_across_mm(*mesh);
+  const double across_mm = size_across_mm(read->mesh);
   if (unit.empty() && across_mm > 0 && !is_inscribed_size(across_mm)) {
-    const Result<Mesh> as_numbers = read_as(1.0);
+    const Result<FiledMesh> as_numbers = read_as(1.0);
     if (!as_numbers) {
       return std::unexpected(as_numbers.error());
     }
-    const Eigen::Vector3d numbers = size_mm(*as_numbers);
+    const Eigen::Vector3d numbers = size_mm(as_numbers->mesh);
     const double mm_per_number = across_mm / numbers.norm();
     const std::string odd = fmt::format("it would be {:.3g} mm across", across_mm);
     const std::optional<std::string_view> likely = likely_unit(across_mm, mm_per_number);
     if (likely && !states_unit(*bytes, file)) {
-      mesh = read_as(mm_per_unit(*likely));
-      if (!mesh) {
-        return std::unexpected(mesh.error());
+      read = read_as(mm_per_unit(*likely));
+      if (!read) {
+        return std::unexpected(read.error());
       }
       out.unit_assumed = *likely;
       const std::string others = choices(numbers, *likely);
@@ -99,10 +99,12 @@ Result<MeshInItsUnit> read_mesh_in_its_unit(const std::string& file, const std::
                        "nothing inscribed is that small: look what its numbers are and say so with --unit");
     }
   }
-  if (const Status measurable = check_measurable(*mesh, file); !measurable) {
+  if (const Status measurable = check_measurable(read->mesh, file); !measurable) {
     return std::unexpected(measurable.error());
   }
-  out.mesh = *std::move(mesh);
+  out.mesh = std::move(read->mesh);
+  out.file_vertices = read->file_vertices;
+  out.vertex_of = std::move(read->vertex_of);
   return out;
 }
 

@@ -2,7 +2,10 @@
 // Copyright The Dubsar developers
 #pragma once
 
+#include <cstddef>
+#include <cstdint>
 #include <string>
+#include <vector>
 
 #include "core/job.h"
 #include "core/mesh.h"
@@ -13,6 +16,8 @@ namespace dubsar {
 /// A mesh to measure, and what its numbers were taken for without anyone's word.
 struct MeshInItsUnit {
   Mesh mesh;
+  std::size_t file_vertices = 0;           ///< as FiledMesh has it, like the next
+  std::vector<std::uint32_t> vertex_of{};  ///< of the mesh
   std::string unit_assumed;  ///< one of kLengthUnits; empty: the unit was given, stated or likely
 };
 

@@ -29,6 +29,24 @@ constexpr const char* kNoOtherWedge = "there is no other wedge to compare it wit
 constexpr const char* kNoOtherTablet =
     "there is no other tablet to compare it with, but copies of it or those with fewer than five wedges";
 
+std::string method_words(int method) {
+  return method > 0 ? fmt::format("method {}", method) : std::string("a method that is not said");
+}
+
+void warn_of_methods(const SearchArguments& arguments, int method, const OtherMethods& otherwise) {
+  if (otherwise.first == nullptr) {
+    return;
+  }
+  log_warning(
+      Error{ErrorKind::kBadInput,
+            fmt::format("{} of {} tablets that are searched were measured in another way than {} ({}): "
+                        "{} for one ({}); one and the same wedge may then be half a unit from itself",
+                        otherwise.others, otherwise.searched, arguments.like, method_words(method),
+                        otherwise.first->name, method_words(otherwise.first->method)),
+            arguments.folder, "measure all with one version of dubsar analyze"}
+          .line());
+}
+
 Result<int> search(const SearchArguments& arguments, CommandContext& context) {
   const Result<WedgeFile> like = read_compared_wedges(arguments.like);
   if (!like) {
@@ -62,9 +80,12 @@ Result<int> search(const SearchArguments& arguments, CommandContext& context) {
   if (of_another_kind > 0) {
     log_debug(fmt::format("{} .json files hold no wedges: passed over", of_another_kind));
   }
+  const OtherMethods otherwise = collection->measured_otherwise(like->method);
+  warn_of_methods(arguments, like->method, otherwise);
   nlohmann::ordered_json json{{"collection", arguments.folder},
                               {"files", collection->files().size()},
                               {"read_anew", collection->read_anew()},
+                              {"of_another_method", otherwise.others},
                               {"like", arguments.like}};
   const auto count = static_cast<std::size_t>(arguments.count);
   if (arguments.wedge >= 0) {

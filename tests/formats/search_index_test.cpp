@@ -14,6 +14,7 @@ SearchIndex two_tablets() {
   IndexedTablet a;
   a.name = "a/wedges.json";
   a.stamp = {1, 2, 3, 4, -5};
+  a.method = 4;
   a.ids = {0, 7};
   a.digests = {11, 12};
   a.features = {1, 2, 3, 4};
@@ -32,6 +33,7 @@ TEST(SearchIndexBytes, ReadBackAsTheyWere) {
   ASSERT_TRUE(back) << back.error().line();
   ASSERT_EQ(back->tablets.size(), 2U);
   EXPECT_EQ(back->tablets[0].name, "a/wedges.json");
+  EXPECT_EQ(back->tablets[0].method, 4);
   EXPECT_EQ(back->tablets[0].stamp, (FileStamp{1, 2, 3, 4, -5}));
   EXPECT_EQ(back->tablets[0].features, (std::vector<float>{1, 2, 3, 4}));
   EXPECT_EQ(back->tablets[1].complaint, "note.json: wedges is missing");

@@ -21,6 +21,8 @@ import numpy as np
 import dubsar
 
 SOURCE = os.environ["DUBSAR_SOURCE_DIR"]
+# To be quick the tablets here are coarse, which every analysis says: tested where it is meant.
+warnings.filterwarnings("ignore", ".*too coarse for wedges of the usual size", dubsar.MeshWarning)
 
 
 def plane(rows=20, cols=30):
@@ -624,6 +626,26 @@ class Pipeline(Scans):
         metres = dubsar.Mesh(self.mesh.vertices / 1000, self.mesh.faces)
         with self.assertWarnsRegex(dubsar.MeshWarning, r"m\.ply: it would be 0\.0\d+ mm across; its numbers look like m:"):
             dubsar.analyze(metres, name="m.ply")
+
+    def test_what_is_to_be_doubted_in_the_wedges_is_warned_of(self):
+        coarse = dubsar.simulate_tablet(seed=5, size_mm=(14, 11, 8), spacing_mm=0.2).mesh
+        with self.assertWarnsRegex(dubsar.MeshWarning, r"c\.ply: too coarse for wedges of the usual size"):
+            wedges = dubsar.analyze(coarse, name="c.ply")
+        stored = json.loads(wedges.to_json())
+        self.assertAlmostEqual(wedges.text_certainty, stored["text_certainty"])
+        with tempfile.TemporaryDirectory() as folder:
+            path = os.path.join(folder, "wedges.json")
+            stored["text_certainty"] = 0.05
+            with open(path, "w") as file:
+                json.dump(stored, file)
+            with warnings.catch_warnings(record=True) as said:
+                warnings.simplefilter("always")
+                self.assertEqual(dubsar.read_wedges(path).text_certainty, 0.05)
+            self.assertTrue(all(one.category is dubsar.MeshWarning for one in said))
+            said = [str(one.message) for one in said]
+            self.assertRegex(said[0], r"wedges\.json: no direction of writing shows in the \d+ wedges that were found")
+            self.assertRegex(said[1], r"wedges\.json: too coarse for wedges of the usual size")
+            self.assertEqual(len(said), 2)
 
     def test_what_cannot_be_measured_is_refused(self):
         with self.assertRaisesRegex(dubsar.BadInputError, "its numbers look like um"):

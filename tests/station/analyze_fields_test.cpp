@@ -6,6 +6,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <fstream>
+#include <string>
+#include <vector>
 
 #include "formats/atomic_file.h"
 #include "formats/mesh_io.h"
@@ -20,6 +23,7 @@ namespace fs = std::filesystem;
 using test::Outcome;
 using test::run_command;
 using ::testing::HasSubstr;
+using ::testing::Not;
 
 class AnalyzeFields : public ::testing::Test {
  protected:
@@ -91,6 +95,79 @@ TEST_F(AnalyzeFields, PicturesAndInvariantsAreWritten) {
   const auto mat = read_whole_file(at("ball.mat"));
   ASSERT_TRUE(mat);
   EXPECT_EQ(std::count(mat->begin(), mat->end(), '\n'), 2 + 1026);
+}
+
+/// The values of each line, as text; the lines are numbered in their order.
+std::vector<std::string> values_of(const fs::path& mat) {
+  std::vector<std::string> out;
+  std::ifstream in(mat);
+  for (std::string line; std::getline(in, line);) {
+    if (!line.starts_with('#')) {
+      const std::size_t blank = line.find(' ');
+      EXPECT_EQ(line.substr(0, blank), std::to_string(out.size()));
+      out.push_back(line.substr(blank));
+    }
+  }
+  return out;
+}
+
+TEST_F(AnalyzeFields, LinesOfAMatAreOfTheVerticesOfThePlyThatWasRead) {
+  const Mesh ball = shapes::sphere(60, 3);
+  const std::size_t vertices = ball.positions.size();
+  constexpr std::size_t kOnSeam = 40;  // stand twice, as with a texture
+  ASSERT_TRUE(write_mesh(at("plain.ply"), ball));
+  std::vector<std::size_t> vertex_of;
+  std::vector<std::size_t> first(vertices);
+  for (std::size_t v = 0; v < vertices; ++v) {
+    first[v] = vertex_of.size();
+    vertex_of.insert(vertex_of.end(), v < kOnSeam ? 2 : 1, v);
+  }
+  std::ofstream seam(at("seam.ply"));
+  seam.precision(9);
+  seam << "ply\nformat ascii 1.0\nelement vertex " << vertex_of.size()
+       << "\nproperty float x\nproperty float y\nproperty float z\nproperty float s\nproperty float t\n"
+       << "element face " << ball.faces.size() << "\nproperty list uchar int vertex_indices\nend_header\n";
+  for (const std::size_t v : vertex_of) {
+    seam << ball.positions[v].x() << ' ' << ball.positions[v].y() << ' ' << ball.positions[v].z() << " 0 0\n";
+  }
+  for (std::size_t f = 0; f < ball.faces.size(); ++f) {
+    seam << 3;
+    for (const std::uint32_t v : ball.faces[f]) {
+      seam << ' ' << first[v] + (v < kOnSeam ? f % 2 : 0);
+    }
+    seam << '\n';
+  }
+  seam.close();
+  const auto measured = [&](const char* mesh, const char* mat, const std::vector<std::string>& more = {}) {
+    test::Arguments words{"analyze",      at(mesh).string(),
+                          "-o",           at((std::string(mat) + ".json").c_str()).string(),
+                          "--invariants", at(mat).string()};
+    words.insert(words.end(), more.begin(), more.end());
+    const Outcome outcome = run_command(words);
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    return outcome.err;
+  };
+  EXPECT_THAT(measured("plain.ply", "plain.mat"), Not(HasSubstr("its lines are of")));
+  EXPECT_THAT(measured("seam.ply", "seam.mat"), Not(HasSubstr("its lines are of")));
+  const std::vector<std::string> plain = values_of(at("plain.mat"));
+  const std::vector<std::string> of_file = values_of(at("seam.mat"));
+  ASSERT_EQ(plain.size(), vertices);
+  ASSERT_EQ(of_file.size(), vertices + kOnSeam);
+  for (std::size_t line = 0; line < of_file.size(); ++line) {
+    EXPECT_EQ(of_file[line], plain[vertex_of[line]]) << line;
+  }
+  const std::string counts = std::to_string(vertices + kOnSeam) + " vertices of seam.ply, not of the " +
+                             std::to_string(vertices) + " of ";
+  EXPECT_THAT(measured("seam.ply", "out.mat", {"--mesh-out", at("out.ply").string()}),
+              HasSubstr("out.mat: its lines are of the " + counts + at("out.ply").string()));
+  // Of an STL nobody knows how its reader counts the corners.
+  ASSERT_TRUE(write_mesh(at("ball.stl"), ball));
+  EXPECT_THAT(
+      measured("ball.stl", "stl.mat"),
+      HasSubstr("stl.mat: its lines are of the " + std::to_string(vertices) +
+                " vertices of the measured mesh, not of the " + std::to_string(3 * ball.faces.size()) +
+                " of ball.stl; use the vertices of --mesh-out"));
+  EXPECT_EQ(values_of(at("stl.mat")).size(), vertices);
 }
 
 }  // namespace

@@ -69,8 +69,9 @@ TEST(SearchCommand, FindsTheLikeAndLeavesOutTheSame) {
   const test::TemporaryFolder folder;
   const auto at = [&](const char* name) { return (folder.path() / name).string(); };
   // Three "tablets" of one shape of wedge each; b and c are nearly alike.
-  const auto write = [&](const char* name, double depth, double length, int count = 12) {
+  const auto write = [&](const char* name, double depth, double length, int count = 12, int method = 0) {
     WedgeFile file;
+    file.method = method;
     for (int i = 0; i < count; ++i) {
       Wedge w;
       w.id = i;
@@ -111,6 +112,16 @@ TEST(SearchCommand, FindsTheLikeAndLeavesOutTheSame) {
   EXPECT_THAT(few.err, HasSubstr("it has 4 wedges to search by, and tablets are compared from 5 on"));
   EXPECT_EQ(run_command({"search", folder.path().string(), "--like", at("few.json"), "--wedge", "2"}).status,
             0);
+  // Wedges that were measured in another way are found, with a word.
+  EXPECT_THAT(few.err, ::testing::Not(HasSubstr("in another way")));
+  EXPECT_EQ(tablets.json()["of_another_method"], 0);
+  write("b.json", 0.5, 2.0, 12, 5);
+  const Outcome mixed = run_command({"--json", "search", folder.path().string(), "--like", at("b.json")});
+  EXPECT_EQ(mixed.status, 0) << mixed.err;
+  EXPECT_EQ(mixed.json()["tablets"].size(), 2U) << mixed.out;
+  EXPECT_EQ(mixed.json()["of_another_method"], 3);
+  EXPECT_THAT(mixed.err, HasSubstr("3 of 4 tablets that are searched were measured in another way than " +
+                                   at("b.json") + " (method 5): a.json for one (a method that is not said)"));
 }
 
 TEST(AnalyzeCommand, SaysPlainlyThatThereAreNone) {
@@ -122,6 +133,9 @@ TEST(AnalyzeCommand, SaysPlainlyThatThereAreNone) {
   EXPECT_EQ(outcome.status, 0) << outcome.err;
   EXPECT_THAT(outcome.out, HasSubstr("no wedges"));
   EXPECT_THAT(outcome.err, HasSubstr("too coarse for wedges of the usual size"));
+  const Outcome again = run_command({"analyze", at("ten.obj"), "-o", at("w.json")});
+  EXPECT_THAT(again.out, HasSubstr("done before"));
+  EXPECT_THAT(again.err, HasSubstr("too coarse for wedges of the usual size"));
   const auto file = read_wedges(at("w.json"));
   ASSERT_TRUE(file);
   EXPECT_TRUE(file->wedges.empty());

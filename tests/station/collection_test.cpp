@@ -118,6 +118,38 @@ TEST_F(CollectionTest, OnlyWhatChangedIsReadAgain) {
   EXPECT_EQ(nearest_to(tablet_of(0.9, 9.1, 12)), "b.json");
 }
 
+TEST_F(CollectionTest, HowItsWedgesWereMeasuredIsKeptOfEachTablet) {
+  const auto put_measured = [this](const char* name, int method) {
+    WedgeFile file = tablet_of(0.5, 2.0, 6);
+    file.method = method;
+    put(name, file);
+  };
+  put_measured("a.json", 3);
+  put_measured("b.json", 5);
+  put_measured("x/c.json", 0);  // as files of before methods were counted
+  WedgeFile none;
+  none.method = 4;
+  put("none.json", none);
+  settle();
+  for (const std::size_t read : {4U, 0U}) {
+    const auto collection = open();
+    ASSERT_TRUE(collection);
+    EXPECT_EQ(collection->read_anew(), read);
+    const OtherMethods otherwise = collection->measured_otherwise(5);
+    EXPECT_EQ(otherwise.searched, 3U) << "without wedges there is nothing to compare";
+    EXPECT_EQ(otherwise.others, 2U);
+    ASSERT_NE(otherwise.first, nullptr);
+    EXPECT_EQ(otherwise.first->name, "a.json");
+    EXPECT_EQ(otherwise.first->method, 3);
+  }
+  put_measured("a.json", 5);
+  put_measured("x/c.json", 5);
+  const auto collection = open();
+  ASSERT_TRUE(collection);
+  EXPECT_EQ(collection->measured_otherwise(5).first, nullptr);
+  EXPECT_EQ(collection->measured_otherwise(5).others, 0U);
+}
+
 TEST_F(CollectionTest, AnIndexThatIsDamagedOrForeignIsMadeAgain) {
   settle();
   EXPECT_EQ(read_anew(), 3U);

@@ -37,6 +37,7 @@ namespace {
 namespace fs = std::filesystem;
 using ::testing::HasSubstr;
 using ::testing::SizeIs;
+using ::testing::StartsWith;
 
 void settle(const MeshViewing& viewing) {
   const auto deadline = std::chrono::steady_clock::now() + std::chrono::minutes(2);
@@ -57,6 +58,10 @@ class Viewer {
     WedgeCorrection gone;
     gone.at_mm = {at_mm};
     viewing_.correct(gone);
+    settle();
+  }
+  void find_wedges() {
+    viewing_.analyse();
     settle();
   }
   void keep(const std::string& name) {
@@ -138,6 +143,30 @@ TEST_F(MeshViewingTest, AGlbIsInMetresHoweverItIsCalled) {
     const ViewedMesh state = Viewer(file).state();
     EXPECT_FALSE(state.error) << state.error->line();
   }
+}
+
+TEST_F(MeshViewingTest, WhatIsDoubtedInTheWedgesIsToldAsTheCommandTellsIt) {
+  Viewer viewer(mesh_);  // of a spacing of 0.2 mm
+  EXPECT_THAT(viewer.state().doubts, SizeIs(0)) << "no wedges are known";
+  viewer.find_wedges();
+  ASSERT_FALSE(viewer.state().doubts.empty());
+  EXPECT_THAT(viewer.state().doubts.back().line(), StartsWith("too coarse for wedges of the usual size"));
+  viewer.remove_wedge(wedges_mm_[0]);
+  EXPECT_FALSE(viewer.state().doubts.empty()) << "it is as coarse as it was";
+
+  WedgeFile file;
+  file.mesh = "tablet.ply";
+  file.text_from_model = RigidTransform();
+  file.wedges.resize(60);
+  ASSERT_TRUE(write_wedges(mesh_.parent_path() / "tablet.wedges.json", file));
+  fs::remove(corrections_);
+  viewer.open(mesh_);
+  ASSERT_THAT(viewer.state().doubts, SizeIs(1));
+  EXPECT_THAT(viewer.state().doubts[0].line(),
+              StartsWith("no direction of writing shows in the 60 wedges that were found"));
+  fs::remove(mesh_.parent_path() / "tablet.wedges.json");
+  viewer.open(mesh_);
+  EXPECT_THAT(viewer.state().doubts, SizeIs(0)) << "of other wedges";
 }
 
 TEST_F(MeshViewingTest, ACorrectionThatAnotherProgramMadeMeanwhileStays) {

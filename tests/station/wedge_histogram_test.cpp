@@ -5,6 +5,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "analysis/wedge_features.h"
+#include "core/units.h"
+
 namespace dubsar {
 namespace {
 
@@ -26,6 +29,28 @@ TEST(WedgeHistogram, CountsEveryWedgeOnceBetweenTheLeastAndTheMost) {
   EXPECT_EQ(length.most, 3);
   EXPECT_THAT(length.bins, ElementsAre(5, 0, 0)) << "all are alike";
   EXPECT_THAT(histogram_of({}, 0, 2).bins, ElementsAre(0, 0));
+  EXPECT_EQ(depth.note + length.note, "");
+}
+
+TEST(WedgeHistogram, AnglesAreThoseOfWedgesThatTheyCanBeReadOf) {
+  std::vector<Wedge> wedges(4);
+  for (Wedge& wedge : wedges) {
+    wedge.intact = kLeastIntact;
+    wedge.roundness = kMostRoundness;
+    wedge.opening_angles_rad.fill(rad_from_deg(90));
+    wedge.depth_mm = 0.5;
+  }
+  wedges[1].intact = 0.79;
+  wedges[2].roundness = 0.021;
+  wedges[1].opening_angles_rad.fill(rad_from_deg(150));
+  wedges[2].opening_angles_rad.fill(rad_from_deg(150));
+  const WedgeHistogram opening = histogram_of(wedges, kWedgeLengths + 1, 2);
+  EXPECT_NEAR(opening.most, 90, 1e-9);
+  EXPECT_THAT(opening.bins, ElementsAre(2, 0));
+  EXPECT_EQ(opening.note, "2 / 4: angles are read where a wedge is known to be whole and sharp");
+  EXPECT_THAT(histogram_of(wedges, 0, 2).bins, ElementsAre(4, 0)) << "a depth is there all the same";
+  wedges[0].beyond_mesh[0] = true;
+  EXPECT_EQ(histogram_of(wedges, 1, 2).note, "3 / 4: of the others the mesh ends before the edge does");
 }
 
 }  // namespace

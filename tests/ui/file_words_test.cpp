@@ -18,6 +18,8 @@
 #include "formats/json_node.h"
 #include "formats/mesh_io.h"
 #include "formats/pins_json.h"
+#include "station/wedge_doubts.h"
+#include "station/wedge_histogram.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/ui/support/refusals.h"
 #include "ui/shell/text_table.h"
@@ -108,7 +110,7 @@ TEST(FileWords, NothingSaidOfARunOrOfTheViewerIsHalfGerman) {
       {"station/calibration_run.cpp", "station/engine_motion.cpp", "station/operator_hint.cpp",
        "station/outward_faces.cpp", "station/package_content.cpp", "station/section_file.cpp",
        "station/selection_store.cpp", "station/tablet_record.cpp", "station/verification.cpp",
-       "analysis/cross_section.cpp", "registration/registrar.cpp"},
+       "station/wedge_doubts.cpp", "analysis/cross_section.cpp", "registration/registrar.cpp"},
       and_these(
           {"its pictures are of a ", " stage, this is of a ", " one", "point ", "scan ", "point pair "}));
   EXPECT_GT(sentences, 50);
@@ -116,6 +118,30 @@ TEST(FileWords, NothingSaidOfARunOrOfTheViewerIsHalfGerman) {
 
 std::string german(const Error& error) {
   return translated(error, Language::kGerman);
+}
+
+TEST(FileWords, WhatIsDoubtedInWedgesIsGerman) {
+  WedgeFile file;
+  file.text_from_model = RigidTransform();
+  file.wedges.resize(12);
+  EXPECT_EQ(
+      german(doubts_of(file, {}).at(0)),
+      "keine Schreibrichtung zeigt sich in den 12 gefundenen Keilen: die Sicherheit wurde an "
+      "beschrifteten Tafeln gelernt, und Vertiefungen in rauem Ton können als Keile durchgehen: ansehen, "
+      "bevor man sie zählt");
+  file.wedges.resize(1);
+  EXPECT_TRUE(german(doubts_of(file, {}).at(0))
+                  .starts_with("in dem einen gefundenen Keil zeigt sich keine Schreibrichtung: die "));
+  file.text_certainty = 1;
+  file.wedges[0].roundness = 0.1;
+  EXPECT_EQ(german(doubts_of(file, {}).at(0)),
+            "die meisten Keile sind abgerieben (die Kanten sind gerundet: 1): Tiefen und Winkel sind die des "
+            "Tons, wie er ist, nicht die des Eindrucks; sie weglassen, um Hände zu vergleichen");
+  file.wedges.resize(2);
+  file.wedges[0].roundness = 0;
+  file.wedges[1].intact = 0.5;
+  EXPECT_EQ(translated(histogram_of(file.wedges, kWedgeLengths, 3).note, Language::kGerman),
+            "1 / 2: Winkel werden abgelesen, wo ein Keil sicher ganz und scharf ist");
 }
 
 TEST(FileWords, AFileOfPinsIsRefusedInGerman) {

@@ -4,6 +4,11 @@
 
 #include <gtest/gtest.h>
 
+#include <fstream>
+#include <iterator>
+#include <regex>
+#include <string>
+
 #include "tests/ui/support/on_a_tablet.h"
 #include "tests/ui/support/read_png.h"
 
@@ -99,6 +104,30 @@ quit
   const Image curvature = test::read_png(in("curvature.png"));
   EXPECT_GT(unlike(test::read_png(in("clay.png")), curvature), 0.1);
   EXPECT_GT(unlike(curvature, test::read_png(in("opening.png"))), 0.0005) << "other bars";
+}
+
+TEST_F(ViewerPanels, WhatIsDoubtedInTheWedgesStandsAboveTheirTable) {
+  std::ifstream file(in("tablet.wedges.json"));
+  std::string text{std::istreambuf_iterator<char>(file), {}};
+  text = std::regex_replace(text, std::regex(R"("text_certainty":[^,]*,)"), R"("text_certainty":0.05,)");
+  text = std::regex_replace(text, std::regex(R"("intact":[^,}]*)"), R"("intact":0.5)");
+  std::ofstream(in("tablet.wedges.json")) << text;
+  const auto outcome = play(R"(wait wedges 60
+wait doubt
+wait whole
+wait idle
+screenshot depth.png
+click feature
+click feature.directional_opening_deg
+wait histogram-of-some
+wait idle
+screenshot opening.png
+click wedge.4
+wait chosen.4
+quit
+)");
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_GT(unlike(test::read_png(in("depth.png")), test::read_png(in("opening.png"))), 0.0005);
 }
 
 TEST_F(ViewerPanels, TheTapeMeasuresAndTableAndViewChooseInEachOther) {

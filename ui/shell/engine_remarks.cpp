@@ -21,6 +21,30 @@ constexpr EnginePhrase kRemarks[] = {
      "die anderen zu ihm passen, nicht wo seine Lage ihn hinstellt; neu registrieren"},
     {"; at fault seem: ", "; schuld sind wohl: "},
     {" mm off)", " mm daneben)"},
+    // what is to be doubted in the wedges of a mesh
+    {"several bodies in one mesh: each is measured as if it were alone, and place.body tells them apart; "
+     "which side is which is told of all together",
+     "mehrere Körper in einem Netz: jeder ist gemessen, als wäre er allein, und place.body hält sie "
+     "auseinander; welche Seite welche ist, gilt für alle zusammen"},
+    {"give each a file of its own where they do not lie alike",
+     "jedem eine eigene Datei geben, wo sie nicht gleich liegen"},
+    {"no direction of writing shows in the one wedge that was found",
+     "in dem einen gefundenen Keil zeigt sich keine Schreibrichtung"},
+    {"no direction of writing shows in the ", "keine Schreibrichtung zeigt sich in den "},
+    {" wedges that were found", " gefundenen Keilen"},
+    {": confidence was learnt on inscribed tablets, and hollows of rough clay may pass for wedges: look at "
+     "them before you count them",
+     ": die Sicherheit wurde an beschrifteten Tafeln gelernt, und Vertiefungen in rauem Ton können als Keile "
+     "durchgehen: ansehen, bevor man sie zählt"},
+    {"most of the wedges are worn (their edges are rounded: ",
+     "die meisten Keile sind abgerieben (die Kanten sind gerundet: "},
+    {"): depths and angles are those of the clay as it is, not of what was pressed",
+     "): Tiefen und Winkel sind die des Tons, wie er ist, nicht die des Eindrucks"},
+    {"leave them out to compare hands", "sie weglassen, um Hände zu vergleichen"},
+    // how many of the wedges a distribution is of
+    {"angles are read where a wedge is known to be whole and sharp",
+     "Winkel werden abgelesen, wo ein Keil sicher ganz und scharf ist"},
+    {"of the others the mesh ends before the edge does", "bei den anderen endet das Netz vor der Kante"},
     // what the reading of a scan remarks
     {" bytes follow what the header tells of and are passed over; export it again if something is missing",
      " Bytes folgen auf das, was der Kopf angibt, und werden übergangen; neu ausgeben, wenn etwas fehlt"},

@@ -297,6 +297,10 @@ void ViewerScreen::draw_histogram(UiContext& ui) {
   const std::string most = decimal(histogram_.most, 2, ui.preferences.language);
   ImGui::SameLine(ImGui::GetContentRegionMax().x - ImGui::CalcTextSize(most.c_str()).x);
   ImGui::TextUnformatted(most.c_str());
+  if (!histogram_.note.empty()) {
+    ui.facts.insert("histogram-of-some");
+    coloured_text(ui.colours.faint, translated(histogram_.note, ui.preferences.language).c_str());
+  }
 }
 
 void ViewerScreen::draw_wedge_table(UiContext& ui, ImVec2 size, bool with_length) {
@@ -304,6 +308,10 @@ void ViewerScreen::draw_wedge_table(UiContext& ui, ImVec2 size, bool with_length
   const std::vector<Wedge>& wedges = *state_.wedges;
   ImGui::TextUnformatted(fmt::format("{}: {}", ui.text(Text::kWedges), wedges.size()).c_str());
   ImGui::PushFont(ui.fonts.small);
+  for (const Error& doubt : state_.doubts) {
+    ui.facts.insert("doubt");
+    coloured_text(ui.colours.amber, translated(doubt, ui.preferences.language).c_str());
+  }
   draw_histogram(ui);
   if (ImGui::BeginTable(
           "table", with_length ? 4 : 3,
