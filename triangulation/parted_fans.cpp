@@ -2,9 +2,11 @@
 // Copyright The Dubsar developers
 #include "triangulation/parted_fans.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <bit>
 #include <functional>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -37,17 +39,36 @@ void append_copies(Draft& draft, std::span<const std::uint32_t> copied) {
   }
 }
 
-/// The place of a vertex a thousandth of the way, or so much more as there are numbers for; the vertex's own
-/// where there are none.
-Vector3f drawn(const Vector3f& p, const Eigen::Vector3d& way) {
+/// What a compressed file of the mesh may keep of places: 23 bits of the way that they reach, and nothing
+/// below 2^-16 mm (formats/draco_mesh.h).
+double step_of_files_mm(std::span<const Vector3f> positions) {
+  constexpr double kMostSteps = 0x1p23;
+  Eigen::AlignedBox3f box;
+  for (const Vector3f& p : positions) {
+    box.extend(p);
+  }
+  const double farthest_mm =
+      std::max({box.min().cwiseAbs().maxCoeff(), box.max().cwiseAbs().maxCoeff(), box.sizes().maxCoeff()});
+  double step_mm = 0x1p-16;
+  while (farthest_mm > step_mm * kMostSteps) {
+    step_mm *= 2;
+  }
+  return step_mm;
+}
+
+/// The place of a vertex a thousandth of the way, or so much more as takes it `least_mm` along an axis, or as
+/// there are numbers for where that is too far; the vertex's own where there are none.
+Vector3f drawn(const Vector3f& p, const Eigen::Vector3d& way, double least_mm) {
   constexpr double kMost = 0.1;
+  Vector3f nearest = p;
   for (double part = 1e-3; part < kMost; part *= 2) {
-    Vector3f q = (p.cast<double>() + part * way).cast<float>();
-    if (q != p) {
+    const Vector3f q = (p.cast<double>() + part * way).cast<float>();
+    if ((q - p).cwiseAbs().maxCoeff() >= static_cast<float>(least_mm)) {
       return q;
     }
+    nearest = nearest == p ? q : nearest;
   }
-  return p;
+  return nearest;
 }
 
 std::uint64_t hash_of(const Vector3f& p) {
@@ -119,11 +140,13 @@ std::vector<std::uint8_t> draw_apart(Mesh& mesh, std::span<const Triangle> faces
       }
     }
   }
+  // What lies one step apart such a file keeps apart, two for what is rounded on the way into it.
+  const double least_mm = 2 * step_of_files_mm(mesh.positions);
   std::vector<std::uint8_t> stays(mesh.positions.size(), 0);
   for (std::size_t k = 0; k < moved.size(); ++k) {
     Vector3f& p = mesh.positions[moved[k]];
     const Vector3f q =
-        around[k].count == 0 ? p : drawn(p, around[k].sum / around[k].count - p.cast<double>());
+        around[k].count == 0 ? p : drawn(p, around[k].sum / around[k].count - p.cast<double>(), least_mm);
     stays[moved[k]] = q == p ? 1 : 0;
     p = q;
   }

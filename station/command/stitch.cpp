@@ -121,6 +121,9 @@ Result<Taken> take_scan_by_scan(const ScanSetArguments& arguments, Stitcher& sti
     const Status before = adding.valid() ? adding.get() : Status{};
     taken.poses.push_back(*pose);
     taken.poses.back().id = scan.id;
+    if (file && !file->says_sigma(*pose)) {
+      taken.without_sigma.insert(scan.id);
+    }
     adding =
         std::async(std::launch::async, [&stitcher, &matter, &context, pose = *pose, scan = std::move(scan)] {
           matter.add(scan.id, *scan.grid, *scan.flags);
@@ -235,6 +238,7 @@ Result<int> stitch_all(const ScanSetArguments& arguments, const StitchStamp& sta
   }
   leave_out_copies(*stitcher, *taken);
   leave_out_without_surface(*stitcher, *taken);
+  tell_unknown_sigmas(*taken, arguments.poses);
   std::ranges::for_each(warnings_of_places(*stitcher, taken->names), log_warning);
   const nlohmann::ordered_json apart = apart_json(*stitcher);
   const Result<Mesh> mesh = stitcher->take_mesh(context.job);

@@ -2,8 +2,13 @@
 // Copyright The Dubsar developers
 #include "station/command/stitch_poses.h"
 
+#include <algorithm>
+#include <cstddef>
 #include <utility>
 
+#include "formats/atomic_file.h"
+#include "formats/json_node.h"
+#include "station/conf_unit.h"
 #include "station/offline.h"
 #include "station/poses_by_id.h"
 
@@ -45,6 +50,23 @@ Result<std::vector<StationScan>> names_in_folder(const ScanSetArguments& argumen
   return set ? Result<std::vector<StationScan>>(std::move(names)) : std::unexpected(set.error());
 }
 
+/// Of the poses of a file that has been read, in its order: whether `sigma_mm` is there, of which a ScanPose
+/// has 0 where it is not. A .conf has no such number.
+std::vector<bool> which_say_sigma(const std::string& poses_file, std::size_t count) {
+  std::vector<bool> out(count, false);
+  const Result<std::string> text =
+      is_conf(poses_file) ? Result<std::string>(std::string()) : read_whole_file(poses_file, kMaxJsonBytes);
+  const Result<JsonDocument> document =
+      text ? JsonDocument::parse(*text, poses_file) : std::unexpected(text.error());
+  if (document) {
+    const std::vector<JsonNode> scans = document->root().at("scans").items();
+    for (std::size_t k = 0; k < std::min(count, scans.size()); ++k) {
+      out[k] = scans[k].find("sigma_mm").has_value();
+    }
+  }
+  return out;
+}
+
 }  // namespace
 
 Result<GivenPoses> GivenPoses::read(const ScanSetArguments& arguments, JobContext& job) {
@@ -54,6 +76,7 @@ Result<GivenPoses> GivenPoses::read(const ScanSetArguments& arguments, JobContex
   }
   GivenPoses out(arguments);
   out.poses_ = std::move(*file);
+  out.says_sigma_ = which_say_sigma(arguments.poses, out.poses_.size());
   if (!SessionStore::is_session(arguments.path) && may_have_other_names(out.poses_, arguments.path)) {
     if (const Status read = out.read_names(job); !read) {
       return std::unexpected(read.error());
@@ -90,6 +113,10 @@ Result<const ScanPose*> GivenPoses::of(const StationScan& scan, JobContext& job)
 
 std::string GivenPoses::lacks(const StationScan& scan) const {
   return lacks_pose(arguments_->poses, poses_, scan);
+}
+
+bool GivenPoses::says_sigma(const ScanPose& pose) const {
+  return says_sigma_[static_cast<std::size_t>(&pose - poses_.data())];
 }
 
 std::vector<ScanPose> GivenPoses::rest() const {

@@ -24,6 +24,8 @@ class GivenPoses {
   [[nodiscard]] Result<const ScanPose*> of(const StationScan& scan, JobContext& job);
   /// Why it has none.
   [[nodiscard]] std::string lacks(const StationScan& scan) const;
+  /// Whether the file says how far the pose, one of its own, may be off.
+  [[nodiscard]] bool says_sigma(const ScanPose& pose) const;
   /// Those that were not given.
   [[nodiscard]] std::vector<ScanPose> rest() const;
 
@@ -33,6 +35,7 @@ class GivenPoses {
 
   const ScanSetArguments* arguments_;
   std::vector<ScanPose> poses_;
+  std::vector<bool> says_sigma_;  ///< of each
   std::optional<std::vector<StationScan>> names_;
   std::set<const ScanPose*> given_;
 };

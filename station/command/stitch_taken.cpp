@@ -2,7 +2,10 @@
 // Copyright The Dubsar developers
 #include "station/command/stitch_taken.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <cstddef>
 #include <system_error>
 #include <utility>
 
@@ -76,6 +79,24 @@ void leave_out_without_surface(const Stitcher& stitcher, Taken& taken) {
     taken.leave_out({id, taken.names.at(id), LeftOutScan::Why::kNoSurface, no_surface_reason()});
     taken.names.erase(id);
     --taken.scans;
+  }
+}
+
+void tell_unknown_sigmas(const Taken& taken, const std::string& poses_file) {
+  std::size_t unknown = 0;
+  std::size_t frames = 0;  // they say 0
+  for (const ScanPose& pose : taken.poses) {
+    if (taken.names.contains(pose.id)) {
+      const bool says = !taken.without_sigma.contains(pose.id);
+      unknown += says ? 0 : 1;
+      frames += says && !(pose.sigma_mm > 0) && !pose.locked ? 1 : 0;
+    }
+  }
+  if (unknown > 0 && unknown + frames > 1) {
+    log_warning(
+        fmt::format("{}: {} of {} poses say no sigma_mm: what these are off by is not in the sigma of the "
+                    "mesh's vertices, which is of the samples alone; dubsar register estimates it",
+                    poses_file, unknown, taken.names.size()));
   }
 }
 

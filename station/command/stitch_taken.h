@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <filesystem>
 #include <map>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -23,6 +24,7 @@ struct Taken {
   std::map<int, std::string> names;   ///< of those, by id
   bool lacks_poses = false;           ///< of a scan that has not been judged yet: then the rest was not taken
   std::vector<ScanPose> poses;        ///< of those
+  std::set<int> without_sigma;        ///< of those whose poses say nothing of how far they may be off
   std::vector<LeftOutScan> left_out;  ///< the others that stand
 
   void leave_out(LeftOutScan scan) {
@@ -42,5 +44,8 @@ void tell_foreign(const std::vector<ForeignFound>& foreign, Taken& taken, Stitch
 void leave_out_copies(const Stitcher& stitcher, Taken& taken);
 /// Those without a triangle: their poses need not be wrong.
 void leave_out_without_surface(const Stitcher& stitcher, Taken& taken);
+/// That the vertices' sigma lacks what poses do not say of themselves. One scan, against which the others
+/// lie, need not say anything.
+void tell_unknown_sigmas(const Taken& taken, const std::string& poses_file);
 
 }  // namespace dubsar

@@ -2,13 +2,17 @@
 // Copyright The Dubsar developers
 // dubsar stitch with the poses of a file: what it does not use, or cannot believe, is told.
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <nlohmann/json.hpp>
 
 #include "acquisition/session_store.h"
+#include "formats/atomic_file.h"
 #include "formats/file_label_reader.h"
 #include "formats/mesh_io.h"
 #include "formats/poses_json.h"
@@ -74,6 +78,49 @@ TEST_F(StitchCommand, SaysWhatAFormatCannotHold) {
   EXPECT_THAT(outcome.complaints(),
               ElementsAre(HasSubstr("mesh.stl: STL holds no reliability, sigma, scans or flags: left out; "
                                     "stitch into a .ply to have them")));
+}
+
+TEST_F(StitchCommand, SaysThatSigmaLacksWhatPosesDoNotSayOfThemselves) {
+  const auto json = [&](std::size_t with_sigma, double first_mm = 0) {
+    nlohmann::json root;
+    for (std::size_t k = 0; k < poses_.size(); ++k) {
+      const RigidTransform& pose = poses_[k].model_from_scanner;
+      Eigen::Matrix<double, 4, 4, Eigen::RowMajor> matrix = Eigen::Matrix4d::Identity();
+      matrix.topLeftCorner<3, 3>() = pose.rotation;
+      matrix.topRightCorner<3, 1>() = pose.translation_mm;
+      root["scans"].push_back(
+          {{"file", poses_[k].file},
+           {"model_from_scanner", std::vector<double>(matrix.data(), matrix.data() + 16)}});
+      if (k < with_sigma) {
+        root["scans"].back()["sigma_mm"] = k == 0 ? first_mm : 0.01;
+      }
+    }
+    return root.dump();
+  };
+  const auto of = [&](const char* file, const std::string& text) {
+    EXPECT_TRUE(write_file_atomically(at(file), text));
+    const Outcome outcome = run_command({"stitch", at("scans"), "--poses", at(file), "-o", at("mesh.ply")});
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    return outcome.complaints();
+  };
+  const auto says = [](const char* of_how_many) {
+    return ElementsAre(HasSubstr(std::string(of_how_many) +
+                                 " poses say no sigma_mm: what these are off by is not "
+                                 "in the sigma of the mesh's vertices"));
+  };
+  EXPECT_THAT(of("all.json", json(3)), SizeIs(0));
+  EXPECT_THAT(of("frame.json", json(1)), says("2 of 3"));
+  EXPECT_THAT(of("one.json", json(2)), says("1 of 3"));
+  EXPECT_THAT(of("against it.json", json(2, 0.01)), SizeIs(0)) << "the others lie against the third";
+  EXPECT_THAT(of("none.json", json(0)), says("3 of 3"));
+  std::string conf;
+  for (const ScanPose& pose : poses_) {
+    const RigidTransform& at_mm = pose.model_from_scanner;
+    const Eigen::Quaterniond q(Eigen::Matrix3d(at_mm.rotation.transpose()));
+    conf += fmt::format("bmesh {} {} {} {} {} {} {} {}\n", pose.file, at_mm.translation_mm.x(),
+                        at_mm.translation_mm.y(), at_mm.translation_mm.z(), q.x(), q.y(), q.z(), q.w());
+  }
+  EXPECT_THAT(of("bun.conf", conf), says("3 of 3"));
 }
 
 TEST_F(StitchCommand, NamesAScanThatTheFileHasNoPoseOf) {
