@@ -29,6 +29,7 @@ constexpr double kLeastNormal = 1e-3;
 constexpr double kEndSpacings = 2.0;
 constexpr const char* kTooLarge = "too large a hollow";
 constexpr const char* kNoSurface = "no free surface above it";
+constexpr const char* kLeft = "not looked at: four others of its basin were";
 
 /// Connected parts of the patch that its wedge does not explain and that lie well below the surface.
 void leftovers(const WedgePatch& patch, const WedgeFaces& faces, std::size_t least,
@@ -200,6 +201,13 @@ std::vector<WedgeCandidate> HollowMeasure::look_at(std::span<const std::uint32_t
       none.rejected = std::move(measured.error());
       found.push_back(std::move(none));
     }
+  }
+  // That it was left is said; what it is nobody knows, so that it is no company, good or bad (hollow_mm2).
+  for (const std::vector<std::uint32_t>& part : open) {
+    WedgeCandidate none;
+    none.wedge.depth_point_mm = source_.position[part.front()].cast<double>();
+    none.rejected = kLeft;
+    found.push_back(std::move(none));
   }
   return found;
 }

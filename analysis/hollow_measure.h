@@ -36,7 +36,8 @@ class HollowMeasure {
       std::span<const std::uint32_t> vertices, std::vector<std::int32_t>* slot,
       std::vector<std::vector<std::uint32_t>>* open = nullptr) const;
 
-  /// Every wedge of a basin, and what was taken for one at first. `vertices` in rising height.
+  /// Every wedge of a basin, and what was taken for one at first, or was not looked at after four of them.
+  /// `vertices` in rising height.
   [[nodiscard]] std::vector<WedgeCandidate> look_at(std::span<const std::uint32_t> vertices,
                                                     std::vector<std::int32_t>* slot) const;
 

@@ -31,7 +31,7 @@ using Made = std::expected<void, std::string>;
 class Corrector {
  public:
   Corrector(const Mesh& mesh, const VertexGraph& graph, const SurfaceFields& fields,
-            const WedgeOptions& options, const WedgeFindings& findings, WedgeSet* set)
+            const WedgeOptions& options, const WedgeFindings& findings, WedgeIds* ids, WedgeSet* set)
       : mesh_(mesh),
         graph_(graph),
         fields_(fields),
@@ -39,16 +39,16 @@ class Corrector {
         measure_(mesh, graph, fields, options, findings.area_mm2, findings.noise_mm),
         around_seed_mm_(std::max(kAroundSeedMm, kAroundSeedSpacings * mean_spacing_mm(findings.area_mm2))),
         slot_(mesh.positions.size(), -1),
+        ids_(*ids),
         set_(*set) {
-    int id = 0;
+    std::size_t k = 0;
     for (const WedgeCandidate& c : findings.candidates) {
       WedgeCandidate light = c;
       light.vertices.clear();
       light.faces.clear();
-      light.wedge.id = c.rejected.empty() ? id++ : -1;
+      light.wedge.id = c.rejected.empty() ? set_.wedges[k++].id : -1;
       company_.push_back(std::move(light));
     }
-    next_id_ = id;
   }
 
   Made make(const WedgeCorrection& correction) {
@@ -169,7 +169,7 @@ class Corrector {
   }
 
   void put_in(WedgeCandidate candidate) {
-    candidate.wedge.id = next_id_++;
+    candidate.wedge.id = ids_.of_made(candidate.wedge);
     for (std::size_t i = 0; i < candidate.vertices.size(); ++i) {
       set_.wedge_of[candidate.vertices[i]] = candidate.wedge.id;
       set_.face_of[candidate.vertices[i]] = candidate.faces[i];
@@ -302,15 +302,16 @@ class Corrector {
   double around_seed_mm_;
   std::vector<std::int32_t> slot_;
   std::vector<WedgeCandidate> company_;  ///< all that are judged together, without their vertices
-  int next_id_ = 0;
+  WedgeIds& ids_;
   WedgeSet& set_;
 };
 
 }  // namespace
 
 void correct_wedges(const Mesh& mesh, const VertexGraph& graph, const SurfaceFields& fields,
-                    const WedgeOptions& options, const WedgeFindings& findings, WedgeSet* set) {
-  Corrector corrector(mesh, graph, fields, options, findings, set);
+                    const WedgeOptions& options, const WedgeFindings& findings, WedgeIds* ids,
+                    WedgeSet* set) {
+  Corrector corrector(mesh, graph, fields, options, findings, ids, set);
   for (std::size_t k = 0; k < options.corrections.size(); ++k) {
     if (const Made made = corrector.make(options.corrections[k]); !made) {
       set->lost.push_back({k, made.error()});

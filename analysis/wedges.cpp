@@ -6,12 +6,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "analysis/height_noise.h"
 #include "analysis/hollow_measure.h"
 #include "analysis/mesh_bodies.h"
 #include "analysis/wedge_corrections.h"
 #include "analysis/wedge_fragments.h"
+#include "analysis/wedge_ids.h"
 #include "core/parallel.h"
 
 namespace dubsar {
@@ -78,8 +80,7 @@ Result<WedgeFindings> candidates_of_body(const Mesh& mesh, const VertexGraph& gr
   clock.done("features");
 
   job.progress("judging", 0);
-  reject_fragments(mesh.positions, &out.candidates);
-  judge_wedges(options.judge, &out.candidates);
+  judge_wholes(options.judge, mesh.positions, &out.candidates);
   out.basin_of = std::move(basins.label);
   clock.done("judging");
   return out;
@@ -125,6 +126,20 @@ void join(const std::vector<std::uint32_t>& vertex, std::size_t body, WedgeFindi
   all->noise_mm = std::max(all->noise_mm, some.noise_mm);
 }
 
+void sort_by_id(WedgeSet* set) {
+  std::vector<std::size_t> order(set->wedges.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::ranges::sort(order, {}, [&](std::size_t i) { return set->wedges[i].id; });
+  std::vector<Wedge> wedges;
+  std::vector<EvidenceValues> evidence;
+  for (const std::size_t i : order) {
+    wedges.push_back(std::move(set->wedges[i]));
+    evidence.push_back(set->evidence[i]);
+  }
+  set->wedges = std::move(wedges);
+  set->evidence = std::move(evidence);
+}
+
 }  // namespace
 
 Result<WedgeFindings> find_candidates(const Mesh& mesh, const VertexGraph& graph, const SurfaceFields& fields,
@@ -161,18 +176,30 @@ WedgeSet settle_wedges(const Mesh& mesh, const VertexGraph& graph, const Surface
       set.rejected.push_back({c.rejected, c.wedge.depth_point_mm});
       continue;
     }
-    Wedge wedge = c.wedge;
-    wedge.id = static_cast<int>(set.wedges.size());
+    set.evidence.push_back(c.evidence);
+    set.wedges.push_back(c.wedge);
+  }
+  WedgeIds ids(options.earlier);
+  const std::vector<int> given = ids.of_found(mesh, set.wedges);
+  std::size_t k = 0;
+  for (const WedgeCandidate& c : findings.candidates) {
+    if (!c.rejected.empty()) {
+      continue;
+    }
+    set.wedges[k].id = given[k];
     for (std::size_t i = 0; i < c.vertices.size(); ++i) {
-      set.wedge_of[c.vertices[i]] = wedge.id;
+      set.wedge_of[c.vertices[i]] = given[k];
       set.face_of[c.vertices[i]] = c.faces[i];
     }
-    set.evidence.push_back(c.evidence);
-    set.wedges.push_back(std::move(wedge));
+    ++k;
   }
   if (!options.corrections.empty()) {
-    correct_wedges(mesh, graph, fields, options, findings, &set);
+    correct_wedges(mesh, graph, fields, options, findings, &ids, &set);
   }
+  sort_by_id(&set);
+  set.former = ids.former(set.wedges);
+  set.found_again = ids.found_again();
+  set.forgot_earlier = ids.forgot_earlier();
   return set;
 }
 

@@ -11,6 +11,7 @@
 #include "analysis/wedge_judge.h"
 #include "analysis/wedge_measure.h"
 #include "core/job.h"
+#include "core/known_wedge.h"
 #include "core/mesh.h"
 #include "core/result.h"
 #include "core/wedge.h"
@@ -23,8 +24,8 @@ namespace dubsar {
 /// larger. 3: faces are fitted away from creases and rims. 4: bowls and cones are none, sigmas
 /// follow what is missing of a wedge, each body of a mesh is measured alone. 5: depths are below the side
 /// that a wedge is impressed in, sigmas follow how round its faces are and how far the surface turns above
-/// it.
-inline constexpr int kWedgeMethod = 5;
+/// it. 6: a hollow that is no wedge takes none into it.
+inline constexpr int kWedgeMethod = 6;
 
 struct WedgeOptions {
   ExitDefinition exits = ExitDefinition::kSurface;
@@ -36,6 +37,8 @@ struct WedgeOptions {
   JudgeOptions judge;
   /// What a person has said of them; made in this order once they are found.
   std::vector<WedgeCorrection> corrections;
+  /// Whose ids are carried over (analysis/wedge_ids.h).
+  EarlierWedges earlier;
 };
 
 /// What the mesh itself says, before anybody corrects it.
@@ -48,13 +51,16 @@ struct WedgeFindings {
 
 /// The wedges of a tablet.
 struct WedgeSet {
-  std::vector<Wedge> wedges;             ///< ids rise; those that were corrected away are missing
+  std::vector<Wedge> wedges;             ///< ids rise; those of former ones are missing
   std::vector<EvidenceValues> evidence;  ///< of each wedge
   std::vector<RejectedWedge> rejected;
   std::vector<std::int32_t> basin_of;  ///< [V] see Basins::label
   std::vector<std::int32_t> wedge_of;  ///< [V] wedge on whose faces the vertex lies, or -1
   std::vector<std::int8_t> face_of;    ///< [V] which face of it, 0 to 2, or -1
   std::vector<LostCorrection> lost;    ///< corrections that could not be made
+  std::vector<KnownWedge> former;      ///< ids that are not to be given again, but to the same wedge
+  std::size_t found_again = 0;         ///< how many of the earlier ones lie where they lay
+  bool forgot_earlier = false;         ///< they were taken for another tablet's
 };
 
 /// Watershed, faces, edges, measures and judgement (seed 000, 3.3 and 3.4). The same bytes for any number of
@@ -68,7 +74,8 @@ struct WedgeSet {
 [[nodiscard]] Result<WedgeFindings> find_candidates(const Mesh& mesh, const VertexGraph& graph,
                                                     const SurfaceFields& fields, const WedgeOptions& options,
                                                     const JobContext& job, StageTimes* timings_s = nullptr);
-/// The wedges among the findings, corrected as `options` say. Arguments as for find_candidates().
+/// The wedges among the findings, corrected as `options` say, under their ids (analysis/wedge_ids.h).
+/// Arguments as for find_candidates().
 [[nodiscard]] WedgeSet settle_wedges(const Mesh& mesh, const VertexGraph& graph, const SurfaceFields& fields,
                                      const WedgeOptions& options, const WedgeFindings& findings);
 

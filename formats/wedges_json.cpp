@@ -101,6 +101,15 @@ std::string wedges_to_json(const WedgeFile& file) {
     add_measures(wedge, &json);
     root["wedges"].push_back(std::move(json));
   }
+  for (const KnownWedge& one : file.former) {
+    OrderedJson json;
+    json["id"] = one.id;
+    json["depth_point"] = json_of(one.depth_point_mm);
+    if (one.by_hand != ByHand::kNo) {
+      json["by_hand"] = kByHandNames[static_cast<std::size_t>(one.by_hand)];
+    }
+    root["former"].push_back(std::move(json));
+  }
   root["profiles"] = OrderedJson::array();
   for (const WedgeProfile& profile : file.profiles) {
     root["profiles"].push_back(profile_json(profile));
@@ -169,6 +178,18 @@ Result<WedgeFile> parse_wedges(std::string_view text, const std::string& where) 
     file.wedges.push_back(wedge_from(node, mm));
     if (file.exits == ExitDefinition::kExtent) {  // earlier versions said those of the other definition
       file.wedges.back().sigma.forget_lengths();
+    }
+  }
+  if (const auto former = root.find("former")) {
+    static const std::vector<std::string> kNames(kByHandNames.begin(), kByHandNames.end());
+    for (const JsonNode& node : former->items()) {
+      KnownWedge one;
+      one.id = static_cast<int>(node.at("id").integer(0, std::numeric_limits<int>::max()));
+      one.depth_point_mm = mm * node.at("depth_point").vector3();
+      if (const auto by_hand = node.find("by_hand")) {
+        one.by_hand = static_cast<ByHand>(by_hand->one_of(kNames));
+      }
+      file.former.push_back(one);
     }
   }
   if (const auto profiles = root.find("profiles")) {

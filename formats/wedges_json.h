@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "core/known_wedge.h"
 #include "core/result.h"
 #include "core/rigid_transform.h"
 #include "core/stage_times.h"
@@ -30,6 +31,7 @@ struct WedgeFile {
   /// Of the mesh: the edge of the equilateral triangle that its mean vertex stands for; 0: not said.
   double spacing_mm = 0;
   std::vector<Wedge> wedges;
+  std::vector<KnownWedge> former;  ///< ids of wedges that are no more, and are given to no other
   std::vector<RejectedWedge> rejected;
   std::size_t corrections = 0;       ///< how many a person has asked for
   std::vector<LostCorrection> lost;  ///< those of them that could not be made

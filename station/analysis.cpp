@@ -85,6 +85,7 @@ WedgeFile wedge_file(std::string mesh_name, const AnalysisOptions& options, cons
   file.spacing_mm = mean_spacing_mm(analysis.findings.area_mm2);
   file.exits = options.wedges.exits;
   file.wedges = analysis.set.wedges;
+  file.former = analysis.set.former;
   file.profiles = make_profiles(file.wedges);
   file.rejected = analysis.set.rejected;
   file.corrections = options.wedges.corrections.size();

@@ -8,6 +8,7 @@
 #include "formats/wedges_json.h"
 #include "station/analysis_asked.h"
 #include "station/correction_region.h"
+#include "station/earlier_wedges.h"
 #include "station/mesh_viewing.h"
 #include "station/place_outside.h"
 #include "station/wedge_doubts.h"
@@ -58,6 +59,7 @@ void MeshViewing::take_corrections(const fs::path& wedges_file, bool in_session)
     return;
   }
   analysis_options_.wedges.exits = known->exits;  // what it holds, whatever a stamp of before says
+  analysis_options_.wedges.earlier.wedges = known_wedges(known->wedges, known->former);
   const bool since =
       count > 0 && fs::last_write_time(corrections_file, error) > fs::last_write_time(wedges_file_, error);
   const bool is_old = since || count != known->corrections;
@@ -112,6 +114,8 @@ void MeshViewing::make_corrections(std::vector<WedgeCorrection> corrections, boo
       written = write_wedges(wedges_file_, wedges);
       if (!written) {
         (void)replace_corrections(file, now, {name, corrections});
+      } else {  // an id that was told there is of no other wedge, also when this is taken back
+        analysis_options_.wedges.earlier.wedges = known_wedges(analysis_->set.wedges, analysis_->set.former);
       }
     }
   }

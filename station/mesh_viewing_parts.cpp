@@ -10,6 +10,7 @@
 #include "formats/wedges_json.h"
 #include "formats/writers_turn.h"
 #include "station/analysis.h"
+#include "station/earlier_wedges.h"
 #include "station/mesh_viewing.h"
 #include "station/place_outside.h"
 #include "station/selection_store.h"
@@ -138,7 +139,10 @@ void MeshViewing::analyse_part(MeshSelection selection, const fs::path& stem) {
     const auto part = std::make_shared<const Mesh>(part_of(*before.mesh, selection));
     fs::path mesh_file = stem;
     mesh_file += ".ply";
-    const AnalysisOptions options;
+    fs::path wedges_file = stem;
+    wedges_file += ".wedges.json";
+    AnalysisOptions options;
+    options.wedges.earlier.wedges = known_wedges_in(wedges_file);
     const Result<Analysis> analysis = analyze_mesh(*part, options, *job_);
     if (!analysis) {
       complain(analysis.error());
@@ -146,8 +150,6 @@ void MeshViewing::analyse_part(MeshSelection selection, const fs::path& stem) {
     }
     WedgeFile wedges = wedge_file(mesh_file.filename().string(), options, *analysis);
     wedges.label = label_;
-    fs::path wedges_file = stem;
-    wedges_file += ".wedges.json";
     Status written = check_outside_packages(mesh_file);
     written = written ? write_mesh(mesh_file, *part, label_) : written;
     written = written ? write_wedges(wedges_file, wedges) : written;
@@ -173,6 +175,7 @@ void MeshViewing::analyse_part(MeshSelection selection, const fs::path& stem) {
     take_field(MeshField::kMeanCurvature, analysis->fields.mean_curvature_per_mm);
     take_field(MeshField::kHeight, analysis->fields.height_mm);
     wedges_file_ = wedges_file;
+    analysis_options_.wedges.earlier.wedges = known_wedges(wedges.wedges, wedges.former);
     in_session_ = false;
     take_selections(selections_file_of(mesh_file));
     take_written({mesh_file, wedges_file});

@@ -16,6 +16,7 @@
 #include "formats/bag_check.h"
 #include "station/done_stamp.h"
 #include "station/earlier_package.h"
+#include "station/earlier_wedges.h"
 #include "station/own_files.h"
 #include "station/package_content.h"
 #include "station/packed_names.h"
@@ -50,8 +51,10 @@ struct FoundWedges {
   bool kept = false;  ///< in the session
 };
 
-/// The session's own wedges, or, where it has none of this surface, measured now.
-Result<FoundWedges> wedges_of(const SessionStore& store, const Mesh& mesh, const JobContext& job) {
+/// The session's own wedges, or, where it has none of this surface, measured now: then under the ids that an
+/// earlier package in its place, or the session, has told.
+Result<FoundWedges> wedges_of(const SessionStore& store, const Mesh& mesh, const fs::path& replaced,
+                              const JobContext& job) {
   if (mesh.faces.empty()) {
     return FoundWedges{};
   }
@@ -59,7 +62,11 @@ Result<FoundWedges> wedges_of(const SessionStore& store, const Mesh& mesh, const
     return FoundWedges{std::move(stored), true};
   }
   log_info("the session holds no wedges of this surface, corrected as it says: they are measured now");
-  Result<std::optional<WedgeFile>> measured = measure_wedges(mesh, session_corrections(store), job);
+  std::vector<KnownWedge> known =
+      replaced.empty() ? std::vector<KnownWedge>() : known_wedges_in(replaced / "data/wedges/wedges.json");
+  add_known(session_known_wedges(store), &known);
+  Result<std::optional<WedgeFile>> measured =
+      measure_wedges(mesh, session_corrections(store), std::move(known), job);
   return measured ? Result<FoundWedges>(FoundWedges{std::move(*measured), false})
                   : std::unexpected(measured.error());
 }
@@ -251,7 +258,7 @@ Result<Package> write_package(const fs::path& session, const fs::path& to, const
   const bool is_named_by_session = tablet.cdli.empty() && tablet.museum_number.empty();
   content.options.base_url = base_url(options.base_url, address_name(identifier, is_named_by_session));
   if (content.has(PackagePart::kWedges)) {
-    Result<FoundWedges> wedges = wedges_of(store, mesh, job);
+    Result<FoundWedges> wedges = wedges_of(store, mesh, options.replace ? to : fs::path(), job);
     if (!wedges) {
       return std::unexpected(wedges.error());
     }

@@ -17,6 +17,7 @@
 #include "formats/make_folder.h"
 #include "formats/sha2.h"
 #include "station/analysis.h"
+#include "station/earlier_wedges.h"
 #include "station/session_name.h"
 #include "station/tablet_label.h"
 #include "station/wedge_doubts.h"
@@ -28,6 +29,7 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr const char* kDocument = "wedges";
+constexpr const char* kWedges = "analysis/wedges.json";
 constexpr const char* kCorrections = "analysis/wedges.corrections.json";
 
 /// Of what wedges are measured on: the vertices and the faces between them.
@@ -80,14 +82,19 @@ std::vector<WedgeCorrection> session_corrections(const SessionStore& store) {
   return std::move(file->corrections);
 }
 
+std::vector<KnownWedge> session_known_wedges(const SessionStore& store) {
+  return known_wedges_in(store.folder() / kWedges);
+}
+
 Result<std::optional<WedgeFile>> measure_wedges(const Mesh& mesh,
                                                 const std::vector<WedgeCorrection>& corrections,
-                                                const JobContext& job) {
+                                                std::vector<KnownWedge> known, const JobContext& job) {
   if (mesh.faces.empty()) {
     return std::nullopt;
   }
   AnalysisOptions options;
   options.wedges.corrections = corrections;
+  options.wedges.earlier.wedges = std::move(known);
   const Result<Analysis> analysis = analyze_mesh(mesh, options, job);
   if (!analysis) {
     if (analysis.error().kind != ErrorKind::kBadInput) {
@@ -97,6 +104,9 @@ Result<std::optional<WedgeFile>> measure_wedges(const Mesh& mesh,
     return std::nullopt;
   }
   warn_of_lost(*analysis, kCorrections);
+  if (const auto few = few_found_again(options.wedges.earlier, analysis->set)) {
+    log_info(*few);
+  }
   WedgeFile file = wedge_file("../mesh/model.ply", options, *analysis);
   // Who scans so coarsely has chosen to: no warning at every end of a run.
   if (const std::optional<Error> coarse = too_coarse(file, "mesh/model.ply")) {
@@ -108,7 +118,8 @@ Result<std::optional<WedgeFile>> measure_wedges(const Mesh& mesh,
 Result<std::optional<SessionWedges>> keep_wedges(SessionStore& store, const Mesh& mesh,
                                                  const JobContext& job) {
   const std::vector<WedgeCorrection> corrections = session_corrections(store);
-  Result<std::optional<WedgeFile>> measured = measure_wedges(mesh, corrections, job);
+  Result<std::optional<WedgeFile>> measured =
+      measure_wedges(mesh, corrections, session_known_wedges(store), job);
   if (!measured) {
     return std::unexpected(measured.error());
   }
@@ -132,7 +143,7 @@ Result<std::optional<SessionWedges>> keep_wedges(SessionStore& store, const Mesh
                               picture_words(file.label, session_name(store.folder())), &mesh);
   }
   const auto write = [&](const fs::path& to) { return write_wedges(to, file); };
-  if (const Status kept = store.replace_file("analysis/wedges.json", write); !kept) {
+  if (const Status kept = store.replace_file(kWedges, write); !kept) {
     return std::unexpected(kept.error());
   }
   for (const WedgeDrawing& drawing : drawings) {

@@ -9,6 +9,7 @@
 
 #include "acquisition/session_store.h"
 #include "core/job.h"
+#include "core/known_wedge.h"
 #include "core/mesh.h"
 #include "core/result.h"
 #include "core/wedge_correction.h"
@@ -29,10 +30,14 @@ struct SessionWedges {
 /// with a warning.
 [[nodiscard]] std::vector<WedgeCorrection> session_corrections(const SessionStore& store);
 
-/// The wedges of a session's mesh with what was said of them. Nothing when the mesh has no surface to look
-/// at. Errors: kCancelled.
+/// The wedges that the session's file tells of, present and former.
+[[nodiscard]] std::vector<KnownWedge> session_known_wedges(const SessionStore& store);
+
+/// The wedges of a session's mesh with what was said of them, under the ids that they had among the known.
+/// Nothing when the mesh has no surface to look at. Errors: kCancelled.
 [[nodiscard]] Result<std::optional<WedgeFile>> measure_wedges(const Mesh& mesh,
                                                               const std::vector<WedgeCorrection>& corrections,
+                                                              std::vector<KnownWedge> known,
                                                               const JobContext& job);
 
 /// Measures the wedges of the mesh, corrected as the session says, and keeps them in the session. Nothing

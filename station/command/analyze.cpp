@@ -24,6 +24,7 @@
 #include "station/command/option_checks.h"
 #include "station/command/outputs.h"
 #include "station/done_stamp.h"
+#include "station/earlier_wedges.h"
 #include "station/field_pictures.h"
 #include "station/outward_faces.h"
 #include "station/place_outside.h"
@@ -269,7 +270,8 @@ Result<int> analyze(const AnalyzeArguments& arguments, CommandContext& context) 
   Mesh& mesh = read->mesh;
   face_outwards(&mesh, arguments.in);
   const double reading_s = seconds_since(start);
-  const AnalysisOptions options = options_of(arguments, said->corrections);
+  AnalysisOptions options = options_of(arguments, said->corrections);
+  options.wedges.earlier = earlier_wedges(arguments.out, arguments.in);
   Result<Analysis> analysis = analyze_mesh(mesh, options, context.job);
   if (!analysis) {
     Error error = analysis.error();
@@ -281,6 +283,9 @@ Result<int> analyze(const AnalyzeArguments& arguments, CommandContext& context) 
   }
   warn_of_others(arguments, *said, corrections_file);
   warn_of_lost(*analysis, corrections_file.string());
+  if (const auto few = few_found_again(options.wedges.earlier, analysis->set)) {
+    log_warning(arguments.out + ": " + *few);
+  }
   analysis->timings_s.insert(analysis->timings_s.begin(), StageTiming{"reading", reading_s});
   const double took_s = seconds_since(start);
   analysis->timings_s.push_back({"all", took_s});

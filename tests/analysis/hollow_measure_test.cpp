@@ -153,5 +153,39 @@ TEST(HollowMeasure, DepthIsBelowTheSideThatAHoleIsIn) {
   EXPECT_NEAR(wedge.depth_mm, 5 - wedge.depth_point_mm.z(), 0.3);
 }
 
+TEST(HollowMeasure, WhatIsLeftOfABasinAfterFourLooksIsSaid) {
+  // Six pits in two rows, taken for one basin; the deepest first.
+  const pits::Pit pit;
+  const auto floor = [&](double x, double y) {
+    double z = 0;
+    for (int k = 0; k < 6; ++k) {
+      z = std::min(z, (1 - 0.02 * k) * pit.floor(x - 4.0 * (k % 3 - 1), y - 3.0 * (k / 3) + 1.5));
+    }
+    return z;
+  };
+  Hollow h;
+  h.mesh = pits::sheet(16, 0.08, floor);
+  h.graph = make_vertex_graph(h.mesh);
+  h.fields = *compute_surface_fields(h.mesh, h.graph, {}, {});
+  h.areas = vertex_areas(h.mesh, h.graph);
+  for (std::uint32_t v = 0; v < h.mesh.positions.size(); ++v) {
+    if (h.mesh.positions[v].z() < -0.03F) {
+      h.vertices.push_back(v);
+    }
+  }
+  std::ranges::stable_sort(h.vertices, {}, [&](std::uint32_t v) { return h.fields.height_mm[v]; });
+  const WedgeOptions options;
+  const HollowMeasure measure(h.mesh, h.graph, h.fields, options, h.areas, 0);
+  std::vector<std::int32_t> slot(h.mesh.positions.size(), -1);
+  const std::vector<WedgeCandidate> found = measure.look_at(h.vertices, &slot);
+  ASSERT_EQ(found.size(), 6U);
+  for (std::size_t k = 0; k < found.size(); ++k) {
+    SCOPED_TRACE(k);
+    EXPECT_EQ(found[k].rejected, k < 4 ? "" : "not looked at: four others of its basin were");
+    EXPECT_EQ(found[k].hollow_mm2 > 0, k < 4) << "nobody knows what company it is";
+    EXPECT_LT(found[k].wedge.depth_point_mm.z(), -0.4) << "its lowest place";
+  }
+}
+
 }  // namespace
 }  // namespace dubsar

@@ -298,9 +298,28 @@ TEST(WedgeCorrections, OfAMeshMadeAnewTheyFindTheirPlacesAgain) {
   const JobContext job;
   const VertexGraph graph = make_vertex_graph(moved);
   const auto fields = compute_surface_fields(moved, graph, {}, job);
+  for (const Wedge& wedge : found().set.wedges) {  // under ids that say nothing of the order
+    options.earlier.wedges.push_back({1000 - wedge.id, wedge.depth_point_mm, ByHand::kNo});
+  }
   const auto set = find_wedges(moved, graph, *fields, options, job);
   ASSERT_TRUE(set);
   EXPECT_THAT(set->lost, IsEmpty()) << set->lost.front().reason;
+  EXPECT_TRUE(std::ranges::is_sorted(set->wedges, {}, &Wedge::id));
+  std::size_t same = 0;
+  for (const Wedge& wedge : set->wedges) {
+    if (const Wedge* before = wedge_of_id(found().set, 1000 - wedge.id)) {
+      ++same;
+      EXPECT_LE((before->depth_point_mm - wedge.depth_point_mm).norm(), kSamePlaceMm);
+      EXPECT_NE(wedge.by_hand, ByHand::kAdded) << "what was measured is deleted, and its id with it";
+    } else {
+      EXPECT_GT(wedge.id, 1000) << "no id that another had";
+    }
+  }
+  EXPECT_GE(same, found().set.wedges.size() * 9 / 10);
+  const auto was_known = [](const auto& one) { return one.id <= 1000; };
+  EXPECT_EQ(std::ranges::count_if(set->wedges, was_known) + std::ranges::count_if(set->former, was_known),
+            std::ssize(found().set.wedges))
+      << "none is forgotten";
   EXPECT_EQ(set->wedges.back().by_hand, ByHand::kAdded);
   EXPECT_LT((set->wedges.back().depth_point_mm - wedge_of_id(found().set, id)->depth_point_mm).norm(), 0.06);
 }

@@ -45,6 +45,7 @@ TEST(WedgesJson, ReadsBackAllThatWasMeasured) {
   wedge.place = {Face::kReverse, 4, 17, -1.5, 2};
   file.wedges = {wedge, Wedge{}};
   file.rejected = {{"too shallow", {7, 8, 9}}};
+  file.former = {{4, {1, 2, 3}, ByHand::kNo}, {9, {4, 5, 6}, ByHand::kMerged}};
   file.timings_s = {{"reading", 0.5}};
   WedgeProfile profile;
   profile.side = Face::kReverse;
@@ -82,6 +83,17 @@ TEST(WedgesJson, ReadsBackAllThatWasMeasured) {
   EXPECT_NEAR(w.sigma.edge_slope_rad[2], 0.9, 1e-14);
   EXPECT_TRUE(std::isnan(w.sigma.length_mm[1]) && std::isnan(w.sigma.volume_mm3))
       << "nobody knows them of these exits";
+  ASSERT_EQ(back->former.size(), 2U);
+  EXPECT_EQ(back->former[0].id, 4);
+  EXPECT_EQ(back->former[0].by_hand, ByHand::kNo);
+  EXPECT_EQ(back->former[1].depth_point_mm, Eigen::Vector3d(4, 5, 6));
+  EXPECT_EQ(back->former[1].by_hand, ByHand::kMerged);
+  EXPECT_THAT(line_of(parse_wedges(R"({"wedges":[],"former":[{"id":-1,"depth_point":[0,0,0]}]})", "w")),
+              HasSubstr("former[0].id"));
+  EXPECT_EQ(parse_wedges(R"({"unit":"m","wedges":[],"former":[{"id":1,"depth_point":[0,0,1]}]})", "w")
+                ->former[0]
+                .depth_point_mm.z(),
+            1000);
   EXPECT_EQ(back->unit_assumed, "m");
   EXPECT_EQ(back->spacing_mm, 0.125);
   file.unit_assumed.clear();

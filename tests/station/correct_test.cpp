@@ -5,7 +5,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <fstream>
+#include <functional>
 
 #include "acquisition/session_store.h"
 #include "formats/corrections_json.h"
@@ -23,6 +25,12 @@ using test::Outcome;
 using test::run_command;
 using ::testing::HasSubstr;
 using ::testing::SizeIs;
+
+/// The deepest first: these are measured as well where a person points at them.
+std::vector<Wedge> by_depth(std::vector<Wedge> wedges) {
+  std::ranges::sort(wedges, std::greater(), &Wedge::depth_mm);
+  return wedges;
+}
 
 class Correct : public ::testing::Test {
  protected:
@@ -255,8 +263,8 @@ TEST_F(Correct, OnesOfASessionAreNotOfAnotherMeshBesideIt) {
 }
 
 TEST_F(Correct, WhatIsAddedIsMarkedInEveryList) {
-  const Wedge first = wedges().wedges[2];
-  ASSERT_EQ(correct({"--delete", "2"}).status, 0);
+  const Wedge first = by_depth(wedges().wedges)[2];
+  ASSERT_EQ(correct({"--delete", std::to_string(first.id)}).status, 0);
   const Eigen::Vector3d& at = first.depth_point_mm;
   const Outcome added = correct(
       {"--add-at", std::to_string(at.x()) + "," + std::to_string(at.y()) + "," + std::to_string(at.z()),
@@ -267,6 +275,82 @@ TEST_F(Correct, WhatIsAddedIsMarkedInEveryList) {
   EXPECT_LT((last.depth_point_mm - at).norm(), 0.1);
   ASSERT_EQ(correct({"--undo"}).status, 0);
   ASSERT_EQ(correct({"--undo"}).status, 0);
+}
+
+/// What is cited by an id is that wedge, whatever is measured after.
+TEST_F(Correct, IdsStayWithTheirWedgesAndAreGivenToNoOther) {
+  const std::string out = in("cited.json");
+  const std::vector<std::string> analyze{"analyze", in("tablet.ply"), "-o", out, "--again"};
+  ASSERT_EQ(run_command(analyze).status, 0);
+  const WedgeFile from_nothing = *read_wedges(out);
+  ASSERT_GT(from_nothing.wedges.size(), 8U);
+  // As if it had been measured on another mesh, where 2 was not seen and others were.
+  WedgeFile cited = from_nothing;
+  cited.wedges.erase(cited.wedges.begin() + 2);
+  for (Wedge& wedge : cited.wedges) {
+    wedge.id = 300 - wedge.id;
+  }
+  cited.former = {{400, {400, 0, 0}, ByHand::kNo}};
+  ASSERT_TRUE(write_wedges(out, cited));
+  const auto expect_cited = [&](int without) {
+    const WedgeFile now = *read_wedges(out);
+    for (const Wedge& wedge : cited.wedges) {
+      const auto same = std::ranges::find(now.wedges, wedge.id, &Wedge::id);
+      EXPECT_EQ(same == now.wedges.end(), wedge.id == without) << wedge.id;
+      EXPECT_TRUE(same == now.wedges.end() || same->depth_point_mm == wedge.depth_point_mm) << wedge.id;
+    }
+    return now;
+  };
+  const Outcome outcome = run_command(analyze);
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_THAT(outcome.err, ::testing::Not(HasSubstr("known before")));
+  const WedgeFile now = expect_cited(-1);
+  EXPECT_EQ(now.wedges.back().id, 401);
+  EXPECT_EQ(now.wedges.back().depth_point_mm, from_nothing.wedges[2].depth_point_mm);
+  ASSERT_THAT(now.former, SizeIs(1));
+  // One that is taken back leaves its id to no other; one that was deleted has its own again.
+  const auto say = [&](std::vector<std::string> words) {
+    words.insert(words.begin(), {"wedges", "correct", in("tablet.ply"), "-o", out});
+    const Outcome said = run_command(words);
+    EXPECT_EQ(said.status, 0) << said.err;
+  };
+  say({"--delete", "295"});
+  EXPECT_THAT(expect_cited(295).former, SizeIs(2));
+  say({"--undo"});
+  EXPECT_THAT(expect_cited(-1).former, SizeIs(1));
+  const auto added_for = [&](int id) {  // whatever is measured there: it gets an id
+    const WedgeFile file = *read_wedges(out);
+    const Wedge& wedge = *std::ranges::find(file.wedges, id, &Wedge::id);
+    const Eigen::Vector3d& at = wedge.depth_point_mm;
+    say({"--delete", std::to_string(id)});
+    say({"--add-at", std::to_string(at.x()) + "," + std::to_string(at.y()) + "," + std::to_string(at.z()),
+         "--reach", "1.2"});
+    const int added = read_wedges(out)->wedges.back().id;
+    say({"--undo"});
+    say({"--undo"});
+    return added;
+  };
+  cited.wedges = by_depth(cited.wedges);
+  EXPECT_EQ(added_for(cited.wedges[2].id), 402);
+  EXPECT_EQ(added_for(cited.wedges[2].id), 402) << "the same wedge again";
+  EXPECT_EQ(added_for(cited.wedges[3].id), 403);
+  EXPECT_THAT(expect_cited(-1).former, SizeIs(3));
+  // A tablet that lies elsewhere in its file has no wedge under the id of another.
+  Mesh mesh = *read_mesh(in("tablet.ply"));
+  const auto analyze_moved = [&](const char* name) {
+    for (Eigen::Vector3f& p : mesh.positions) {
+      p.z() += 30;
+    }
+    std::filesystem::create_directory(in("there"));
+    EXPECT_TRUE(write_mesh(in(name), mesh));
+    return run_command({"analyze", in(name), "-o", out}).err;
+  };
+  EXPECT_THAT(analyze_moved("there/tablet.ply"), HasSubstr("the others have new ids"));
+  EXPECT_GT(read_wedges(out)->wedges.front().id, 403);
+  // Another one counts from 0.
+  EXPECT_THAT(analyze_moved("there/other.ply"), HasSubstr("all ids are given anew"));
+  EXPECT_EQ(read_wedges(out)->wedges.front().id, 0);
+  EXPECT_THAT(read_wedges(out)->former, SizeIs(0));
 }
 
 TEST_F(Correct, ACorrectionThatLostItsPlaceIsAWarning) {

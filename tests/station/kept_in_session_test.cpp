@@ -6,9 +6,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "acquisition/device_uri.h"
+#include "sim/tablet.h"
 #include "station/device_panel.h"
 #include "station/session_wedges.h"
 #include "tests/support/raster_mesh.h"
@@ -47,6 +49,38 @@ TEST_F(KeptInSession, WedgesOfAnotherMethodAreMeasuredAnew) {
   document.erase("method");  // before there was a second one
   ASSERT_TRUE(store_.save_document("wedges", document.dump()));
   EXPECT_FALSE(stored_wedges(store_, mesh, {}));
+}
+
+TEST_F(KeptInSession, WedgesThatAreMeasuredAnewKeepTheirIds) {
+  sim::TabletOptions options;
+  options.seed = 5;
+  options.size_mm = {14, 11, 8};
+  options.spacing_mm = 0.2;
+  JobContext job;
+  const Mesh mesh = sim::make_tablet(options, job)->mesh;
+  ASSERT_TRUE(keep_wedges(store_, mesh, {}).value());
+  const auto path = store_.folder() / "analysis/wedges.json";
+  WedgeFile file = read_wedges(path).value();
+  ASSERT_GT(file.wedges.size(), 1U);
+  EXPECT_EQ(file.wedges.front().id, 0);
+  for (Wedge& wedge : file.wedges) {
+    wedge.id = 50 - wedge.id;
+  }
+  ASSERT_TRUE(
+      store_.replace_file("analysis/wedges.json", [&](const auto& to) { return write_wedges(to, file); }));
+  ASSERT_TRUE(keep_wedges(store_, mesh, {}).value());
+  const WedgeFile again = read_wedges(path).value();
+  ASSERT_EQ(again.wedges.size(), file.wedges.size());
+  for (const Wedge& wedge : file.wedges) {
+    const auto same = std::ranges::find(again.wedges, wedge.id, &Wedge::id);
+    ASSERT_NE(same, again.wedges.end()) << wedge.id;
+    EXPECT_EQ(same->depth_point_mm, wedge.depth_point_mm);
+  }
+  // What an export measures goes by them, too.
+  const std::optional<WedgeFile> measured =
+      measure_wedges(mesh, {}, session_known_wedges(store_), {}).value();
+  ASSERT_TRUE(measured);
+  EXPECT_EQ(measured->wedges.front().id, again.wedges.front().id);
 }
 
 TEST_F(KeptInSession, DevicesStayAsEarlierVersionsKeptThem) {

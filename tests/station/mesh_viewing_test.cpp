@@ -64,6 +64,10 @@ class Viewer {
     viewing_.analyse();
     settle();
   }
+  void undo() {
+    viewing_.undo_correction();
+    settle();
+  }
   void keep(const std::string& name) {
     viewing_.keep_selection({name, MeshElement::kFace, {{0, 3}}});
     settle();
@@ -334,6 +338,29 @@ TEST_F(MeshViewingTest, ACorrectionMeasuresAsTheWedgesWereMeasured) {
     EXPECT_EQ(after->wedges[i].depth_point_mm, as_read->wedges[i + 1].depth_point_mm);
     EXPECT_EQ(after->wedges[i].volume_mm3, as_read->wedges[i + 1].volume_mm3);
   }
+}
+
+TEST_F(MeshViewingTest, ACorrectionLeavesTheOthersTheIdsThatTheyHad) {
+  const JobContext job;
+  const Result<Analysis> analysis = analyze_mesh(*tablet_, {}, job);
+  const fs::path file = mesh_.parent_path() / "tablet.wedges.json";
+  WedgeFile before = wedge_file("tablet.ply", {}, *analysis);
+  for (Wedge& wedge : before.wedges) {
+    wedge.id += 30;
+  }
+  ASSERT_TRUE(write_wedges(file, before));
+  Viewer viewer(mesh_);
+  viewer.remove_wedge(before.wedges[0].depth_point_mm);
+  ASSERT_FALSE(viewer.state().error) << viewer.state().error->line();
+  const WedgeFile after = *read_wedges(file);
+  ASSERT_THAT(after.wedges, SizeIs(before.wedges.size() - 1));
+  EXPECT_EQ(after.wedges.front().id, 31);
+  EXPECT_EQ(viewer.state().wedges->front().id, 31);
+  ASSERT_THAT(after.former, SizeIs(1));
+  EXPECT_EQ(after.former.front().id, 30);
+  viewer.undo();
+  EXPECT_EQ(read_wedges(file)->wedges.front().id, 30);
+  EXPECT_THAT(read_wedges(file)->former, SizeIs(0));
 }
 
 TEST_F(MeshViewingTest, WhatIsKeptOfASessionsMeshSaysWhatTheSessionSays) {

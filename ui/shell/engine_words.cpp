@@ -420,6 +420,7 @@ constexpr EnginePhrase kPhrases[] = {
     {"its faces meet far below its floor", "seine Flächen treffen sich weit unter seinem Boden"},
     {"it is round: a bowl or a cone, not three faces",
      "es ist rund: eine Schale oder ein Kegel, nicht drei Flächen"},
+    {"not looked at: four others of its basin were", "nicht angesehen: vier andere seines Beckens wurden es"},
     {"too few vertices lie on its faces", "zu wenige Punkte liegen auf seinen Flächen"},
     {"an inner edge is too short or too long", "eine innere Kante ist zu kurz oder zu lang"},
     // edges, where a sentence above does not hold them
