@@ -136,7 +136,7 @@ TEST_F(SessionUnit, AConfIsInTheUnitThatItsScansState) {
   };
   const Outcome theirs = stitched("metres.conf");
   EXPECT_EQ(theirs.status, 0) << theirs.err;
-  EXPECT_THAT(theirs.complaints(), SizeIs(0)) << theirs.err;
+  EXPECT_THAT(theirs.complaints(), ElementsAre(HasSubstr("poses say no sigma_mm"))) << theirs.err;
   EXPECT_EQ(theirs.json()["components"], 1);
   EXPECT_EQ(run_command({"register", at("scans"), "--from-poses", at("metres.conf")}).status, 0);
   // One that is not: no folder of scans is in two units by intent.
