@@ -54,6 +54,16 @@ class MovedCopies : public ::testing::Test {
   void add(int id, const RangeGrid& grid) { registrar.add(id, shared(grid), nullptr, job); }
   void add_moved(int id, const RangeGrid& grid, int k) { add(id, test::moved(grid, frame(k))); }
   void finalize() { ASSERT_TRUE(registrar.finalize(job)); }
+  /// Three scans, and the second four times more, as 7 to 10 in other frames.
+  void add_all() {
+    add(0, grids()[0]);
+    add(1, grids()[1]);
+    for (int k = 0; k < 4; ++k) {
+      add_moved(7 + k, grids()[1], k);
+    }
+    add(2, grids()[2]);
+    finalize();
+  }
   [[nodiscard]] ScanPose pose(int id) const {
     for (const ScanPose& pose : registrar.poses()) {
       if (pose.id == id) {
@@ -101,13 +111,7 @@ const std::map<int, ScanPose>& alone() {
 }
 
 TEST_F(MovedCopies, ChangeNothing) {
-  add(0, grids()[0]);
-  add(1, grids()[1]);
-  for (int k = 0; k < 4; ++k) {
-    add_moved(7 + k, grids()[1], k);
-  }
-  add(2, grids()[2]);
-  finalize();
+  add_all();
   for (const auto& [id, without] : alone()) {
     EXPECT_EQ(pose(id).model_from_scanner.row_major(), without.model_from_scanner.row_major()) << id;
     EXPECT_EQ(pose(id).sigma_mm, without.sigma_mm) << id;
@@ -185,13 +189,7 @@ TEST_F(MovedCopies, AWordIsSaidInTheFrameOfItsId) {
 }
 
 TEST_F(MovedCopies, ALockKeepsPosesToTheLastDigit) {
-  add(0, grids()[0]);
-  add(1, grids()[1]);
-  for (int k = 0; k < 4; ++k) {
-    add_moved(7 + k, grids()[1], k);
-  }
-  add(2, grids()[2]);
-  finalize();
+  add_all();
   const std::vector<ScanPose> before = registrar.poses();
   for (int id = 7; id < 11; ++id) {
     const auto stored = pose(id).model_from_scanner.row_major();

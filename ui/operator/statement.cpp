@@ -3,32 +3,18 @@
 #include "ui/operator/statement.h"
 
 #include <algorithm>
-#include <cctype>
 
 #include "archive/seen_line.h"
 #include "station/session_faults.h"
 #include "ui/operator/before_signing.h"
 #include "ui/operator/map_areas.h"
+#include "ui/operator/next_steps.h"
+#include "ui/operator/sentences.h"
 #include "ui/shell/widgets.h"
 
 namespace dubsar::ui {
 
 namespace {
-
-std::string capitalised(std::string text) {
-  if (!text.empty()) {
-    text.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(text.front())));
-  }
-  return text;
-}
-
-std::string sentence(const std::string& english, Language language) {
-  return fmt::format("{}.", capitalised(translated(english, language)));
-}
-
-void add_sentence(std::string& to, const std::string& sentence) {
-  to += (to.empty() ? "" : " ") + sentence;
-}
 
 /// What is wrong with scans that are in the model: before the signature, not after it. True where something
 /// is.
@@ -126,10 +112,6 @@ void say_faults(Statement& out, const LiveState& state, bool is_free, bool concl
   out.detail = said;
 }
 
-bool is_turned_by_hand(const NextView& next) {
-  return next.placement && next.placement->hand_turn;
-}
-
 /// A run was stopped, or the window closed: what is shown is not in the session, and no name goes under it
 /// yet.
 bool lacks_verdict(const LiveState& state) {
@@ -140,43 +122,6 @@ bool lacks_verdict(const LiveState& state) {
 bool is_driven(const LiveState& state) {
   return state.is_driven && state.red_map && !state.red_map->next.empty() &&
          state.red_map->next.front().placement;
-}
-
-/// What the red map would do next, in the words that it has for it; empty where it has none.
-std::string by_hand(const LiveState& state, Language language) {
-  const bool any = state.red_map && !state.red_map->next.empty();
-  return any ? capitalised(translated(state.red_map->next.front().say, language)) : std::string();
-}
-
-/// What the hand does, and what the motors do behind it: "turn …; then turntable to …". Either may be empty.
-struct NextSteps {
-  std::string hand, motors;
-};
-
-NextSteps steps_of(const NextView& next) {
-  constexpr std::string_view kThen = "; then ";
-  if (next.placement && !is_turned_by_hand(next)) {
-    return {{}, next.say};
-  }
-  const auto then = next.say.find(kThen);
-  return !next.placement || then == std::string::npos
-             ? NextSteps{next.say, {}}
-             : NextSteps{next.say.substr(0, then), next.say.substr(then + kThen.size())};
-}
-
-std::string goes_itself(const std::string& motors, Language language) {
-  return motors.empty() ? std::string()
-                        : filled(text_of(Text::kGoesItself, language), translated(motors, language));
-}
-
-/// What motors do is not told as if the operator were to do it.
-std::string what_is_next(const NextView& next, Language language) {
-  const NextSteps steps = steps_of(next);
-  std::string said = steps.hand.empty() ? std::string() : sentence(steps.hand, language);
-  if (const std::string drive = goes_itself(steps.motors, language); !drive.empty()) {
-    add_sentence(said, drive);
-  }
-  return said;
 }
 
 /// The group that the scan is of, which fits nothing of the model; null where it is of none.
