@@ -95,7 +95,7 @@ DUBSAR_EXPORT=no "$workflows/check-collection" "$folder" 2>/dev/null || fail "ch
 # What a person has said in the session is in its wedges here as in its package, and made out once.
 do_tablet 0 whole
 beside=$folder/whole.results/wedges.json
-wedges_of() { grep -c '"depth_point"' "$1"; }
+wedges_of() { grep -c '"confidence"' "$1"; }
 before=$(wedges_of "$beside")
 place=$(tr -d ' \n' <"$beside" | sed -E 's/.*"wedges":\[\{"id":0,"depth_point":(\[[^]]*\]).*/\1/')
 echo "{\"unit\":\"mm\",\"mesh\":\"model.ply\",\"corrections\":[{\"do\":\"delete\",\"at\":[$place]}]}" \
