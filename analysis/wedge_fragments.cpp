@@ -5,7 +5,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <ranges>
+#include <numeric>
 
 #include "core/parallel.h"
 
@@ -89,39 +89,39 @@ bool continues(const WedgeCandidate& piece, const WedgeCandidate& whole) {
   return aside < 0.3 * whole.nearest_mm && up > -0.3 * whole.nearest_mm;
 }
 
-/// By candidate: the others that it is a piece of, of those that are not rejected.
-std::vector<std::vector<std::size_t>> find_wholes(std::span<const Eigen::Vector3f> position,
-                                                  const std::vector<WedgeCandidate>& candidates) {
+}  // namespace
+
+void reject_fragments(std::span<const Eigen::Vector3f> position, std::vector<WedgeCandidate>* candidates) {
   // By x, so that each is compared with what is near alone.
   std::vector<std::size_t> order;
-  std::vector<double> reach(candidates.size(), 0.0);
+  std::vector<double> reach(candidates->size(), 0.0);
   double widest = 0;
-  for (std::size_t i = 0; i < candidates.size(); ++i) {
-    if (candidates[i].rejected.empty()) {
+  for (std::size_t i = 0; i < candidates->size(); ++i) {
+    if ((*candidates)[i].rejected.empty()) {
       order.push_back(i);
-      reach[i] = reach_mm(candidates[i]);
+      reach[i] = reach_mm((*candidates)[i]);
       widest = std::max(widest, reach[i]);
     }
   }
-  const auto x_of = [&](std::size_t i) { return candidates[i].wedge.depth_point_mm.x(); };
+  const auto x_of = [&](std::size_t i) { return (*candidates)[i].wedge.depth_point_mm.x(); };
   std::ranges::stable_sort(order, {}, x_of);
-  std::vector<std::vector<std::size_t>> wholes(candidates.size());
+  std::vector<std::uint8_t> piece(candidates->size(), 0);
   parallel_for_each_index(
       order.size(),
       [&](std::size_t at) {
         const std::size_t i = order[at];
-        const WedgeCandidate& c = candidates[i];
+        const WedgeCandidate& c = (*candidates)[i];
         const auto from = std::ranges::lower_bound(order, x_of(i) - widest - reach[i], {}, x_of);
         for (auto it = from; it != order.end() && x_of(*it) <= x_of(i) + widest + reach[i]; ++it) {
           const std::size_t j = *it;
-          const WedgeCandidate& other = candidates[j];
+          const WedgeCandidate& other = (*candidates)[j];
           const double apart = (other.wedge.depth_point_mm - c.wedge.depth_point_mm).norm();
           if (j == i || apart > reach[j] + reach[i]) {
             continue;
           }
           if (continues(c, other)) {
-            wholes[i].push_back(j);
-            continue;
+            piece[i] = 1;
+            return;
           }
           const double mine = share_on(c, other, position);
           if (mine < kPiece) {
@@ -132,43 +132,16 @@ std::vector<std::vector<std::size_t>> find_wholes(std::span<const Eigen::Vector3
           const bool smaller =
               c.vertices.size() != other.vertices.size() ? c.vertices.size() < other.vertices.size() : i > j;
           if (mutual ? smaller : mine > theirs) {
-            wholes[i].push_back(j);
+            piece[i] = 1;
+            return;
           }
         }
       },
       16);
-  return wholes;
-}
-
-}  // namespace
-
-void judge_wholes(const JudgeOptions& options, std::span<const Eigen::Vector3f> position,
-                  std::vector<WedgeCandidate>* candidates) {
-  const std::vector<std::vector<std::size_t>> wholes = find_wholes(position, *candidates);
-  std::vector<std::uint8_t> may_be_whole(candidates->size(), 0);  // not judged to be none, so far
-  for (std::size_t i = 0; i < candidates->size(); ++i) {
-    may_be_whole[i] = (*candidates)[i].rejected.empty() ? 1 : 0;
-  }
-  // Each turn but the last finds one more that is none.
-  for (bool again = true; again;) {
-    std::vector<std::uint8_t> is_piece(candidates->size(), 0);
-    for (std::size_t i = 0; i < candidates->size(); ++i) {
-      is_piece[i] =
-          std::ranges::any_of(wholes[i], [&](std::size_t j) { return may_be_whole[j] != 0; }) ? 1 : 0;
-      if (may_be_whole[i] != 0) {
-        (*candidates)[i].rejected = is_piece[i] != 0 ? "part of another wedge" : "";
-      }
+  for (std::size_t i = 0; i < piece.size(); ++i) {
+    if (piece[i] != 0) {
+      (*candidates)[i].rejected = "part of another wedge";
     }
-    judge_wedges(options, candidates);
-    for (std::size_t i = 0; i < candidates->size(); ++i) {
-      if (is_piece[i] == 0 && !(*candidates)[i].rejected.empty()) {
-        may_be_whole[i] = 0;
-      }
-    }
-    again = std::ranges::any_of(std::views::iota(std::size_t{0}, candidates->size()), [&](std::size_t i) {
-      return is_piece[i] != 0 && may_be_whole[i] != 0 &&
-             std::ranges::none_of(wholes[i], [&](std::size_t j) { return may_be_whole[j] != 0; });
-    });
   }
 }
 

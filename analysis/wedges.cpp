@@ -80,7 +80,8 @@ Result<WedgeFindings> candidates_of_body(const Mesh& mesh, const VertexGraph& gr
   clock.done("features");
 
   job.progress("judging", 0);
-  judge_wholes(options.judge, mesh.positions, &out.candidates);
+  reject_fragments(mesh.positions, &out.candidates);
+  judge_wedges(options.judge, &out.candidates);
   out.basin_of = std::move(basins.label);
   clock.done("judging");
   return out;
