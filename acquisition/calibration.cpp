@@ -9,12 +9,15 @@
 #include "acquisition/calibration_joint.h"
 #include "acquisition/calibration_laser.h"
 #include "acquisition/calibration_stage.h"
+#include "acquisition/mirror_axis.h"
 #include "core/number_text.h"
 #include "core/units.h"
 
 namespace dubsar {
 
 namespace {
+
+constexpr const char* kMoreStripe = "show the stripe on the board near and far, left and right";
 
 std::string rounded(double value) {
   return number_text(std::round(value * 100) / 100);
@@ -110,6 +113,10 @@ void tell_lost_stripes(const std::vector<CalibrationView>& views, const std::vec
   }
 }
 
+std::unexpected<Error> bad_volume(double sigma_um, const std::string& mend) {
+  return bad_input({}, "points would be known to " + rounded(sigma_um) + " µm only", mend);
+}
+
 /// Refuses what is worse than the limits, with the reason.
 Status good_enough(const CalibrationOptions& options, const JointErrors& errors, const JointState& state) {
   const CameraModel& camera = state.camera;
@@ -150,8 +157,7 @@ Status good_enough(const CalibrationOptions& options, const JointErrors& errors,
         "turn the board on the turntable as far to either side as the camera still sees it");
   }
   if (1e3 * errors.volume_sigma_mm > options.most_volume_sigma_um) {
-    return refuse("points would be known to " + rounded(1e3 * errors.volume_sigma_mm) + " µm only",
-                  "show the stripe on the board near and far, left and right");
+    return bad_volume(1e3 * errors.volume_sigma_mm, kMoreStripe);
   }
   return {};
 }
@@ -230,6 +236,11 @@ Result<CalibrationReport> calibrate_rig(const std::vector<CalibrationView>& view
     quality.axis_sigma_rad = mirror_axis_doubt_rad(rig, errors->axis_sigma_rad);
     report.mirror =
         missing_mirror_poses(views, *intrinsics, rig, quality.axis_sigma_rad, options.wanted_mirror_axis_rad);
+    quality.volume_sigma_um =
+        std::hypot(quality.volume_sigma_um, 1e3 * mirror_axis_sigma_mm(rig, quality.axis_sigma_rad));
+    if (quality.volume_sigma_um > options.most_volume_sigma_um) {
+      return bad_volume(quality.volume_sigma_um, report.mirror ? report.mirror->say : kMoreStripe);
+    }
     if (report.mirror) {
       report.missing.insert(report.missing.begin(), report.mirror->say);
     }

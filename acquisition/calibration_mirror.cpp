@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 
+#include "acquisition/mirror_axis.h"
 #include "core/number_text.h"
 #include "core/units.h"
 
@@ -47,6 +48,12 @@ double reach(const RigCalibration& rig, double sign) {
 double mirror_axis_doubt_rad(const RigCalibration& rig, double sigma_rad) {
   const double lean = std::asin(std::clamp(rig.motion.direction.dot(rig.laser.normal), -1.0, 1.0));
   return std::hypot(sigma_rad, lean);
+}
+
+double mirror_axis_sigma_mm(const RigCalibration& rig, double doubt_rad) {
+  const double way = std::max(reach(rig, 1), -reach(rig, -1));
+  const double half_field = 0.5 * rig.camera.width * rig.field_per_px_mm();
+  return half_field * std::min(doubt_rad, rad_from_deg(90)) * (1 - std::cos(way));
 }
 
 std::optional<MirrorAdvice> missing_mirror_poses(const std::vector<CalibrationView>& views,

@@ -109,8 +109,12 @@ Result<LiveCalibration> LiveCalibration::start(const LiveCalibrationPlan& given,
     if (Status zero = check_zero(*axis, stage, *plan.set.motion, stage.uri()); !zero) {
       return std::unexpected(zero.error());
     }
-    const StopsWhenCancelled watch(stage, job);
-    if (Status homed = home_once(stage, plan.axis); !homed) {
+    StopsWhenCancelled watch(stage, job);
+    const Status homed = home_once(stage, plan.axis);
+    if (auto refused = watch.refused()) {
+      return std::unexpected(std::move(*refused));
+    }
+    if (!homed) {
       return std::unexpected(homed.error());
     }
   }
@@ -189,9 +193,12 @@ Result<LiveCalibration::Taken> LiveCalibration::take_pose(const JobContext& job)
   }
   const StreamGuard stream(camera_);
   LaserGuard dark(stage_, static_cast<std::uint32_t>(plan_.laser));
-  const StopsWhenCancelled watch(stage_, job);
+  StopsWhenCancelled watch(stage_, job);
   Result<Taken> taken = pose_while_streaming(job);
   const Status off = dark.off(taken ? Status{} : std::unexpected(taken.error()));
+  if (auto refused = watch.refused()) {
+    return std::unexpected(std::move(*refused));
+  }
   return off ? std::move(taken) : std::unexpected(off.error());
 }
 
@@ -258,8 +265,12 @@ Result<LiveCalibration::Taken> LiveCalibration::take_stops(const JobContext& job
     return std::unexpected(started.error());
   }
   const StreamGuard stream(camera_);
-  const StopsWhenCancelled watch(stage_, job);
-  return stops_while_streaming(job);
+  StopsWhenCancelled watch(stage_, job);
+  Result<Taken> taken = stops_while_streaming(job);
+  if (auto refused = watch.refused()) {
+    return std::unexpected(std::move(*refused));
+  }
+  return taken;
 }
 
 Result<LiveCalibration::Taken> LiveCalibration::stops_while_streaming(const JobContext& job) {

@@ -48,7 +48,7 @@ class LiveCalibration {
   };
   /// The board held still: a picture with the laser off, one with it on, one with it off again. Of no use: no
   /// board, or one that moved meanwhile. The laser is off afterwards. Errors: kDevice, kStorage,
-  /// kCancelled.
+  /// kCancelled when `job` was cancelled and the stage has obeyed.
   [[nodiscard]] Result<Taken> take_pose(const JobContext& job);
   /// The board lying on the stage, which goes to its stops. Of no use: a board that is seen at fewer than
   /// three.

@@ -129,6 +129,9 @@ Status RangeRig::run(ProfileSink& sink, std::optional<LaserGuard>& dark) {
   } else {
     status = stopped_short(file_, axis_.rotary, watch.track().last().value_or(travel.from));
   }
+  if (status && !done && done.error().kind == ErrorKind::kDevice) {
+    status = std::unexpected(done.error());  // all rows are there; the camera's own laser may be on
+  }
   if (placed.begun()) {
     if (const auto remark = placed.pitch_remark()) {
       sink.remark(*remark);
@@ -147,9 +150,9 @@ Status RangeRig::stop() {
 
 Status RangeRig::halt() {
   stopped_->store(true);
-  Status of_stage = stage_.emergency_stop();
-  [[maybe_unused]] const Status of_camera = camera_.stop();
-  return of_stage;
+  const Status of_stage = stage_.emergency_stop();
+  const Status of_camera = camera_.stop();
+  return of_stage ? of_camera : of_stage;
 }
 
 }  // namespace dubsar

@@ -158,8 +158,9 @@ auto RangeSource::watched(const JobContext& job, const Call& call) {
   StopsWhenCancelled watch(device_, job, halted_.get());
   auto answer = call();
   note_stop(watch.end());
-  if (job.cancelled() && !*halted_ && !stop_refused_) {
-    note_stop(device_.stop());  // who made the call end may have seen it before the watch did
+  if ((job.cancelled() || *halted_) && !stop_refused_) {
+    // Who made the call end may have seen it before the watch did; and a camera has answered only now.
+    note_stop(device_.stop());
   }
   return answer;
 }
@@ -183,19 +184,11 @@ Status RangeSource::stop() {
 }
 
 void RangeSource::note_stop(const Status& answer) {
-  const bool is_refused = !answer && answer.error().kind != ErrorKind::kCancelled;
-  stop_refused_ = is_refused ? std::optional(answer.error()) : std::nullopt;
+  stop_refused_ = not_obeyed(answer, *halted_) ? std::optional(answer.error()) : std::nullopt;
 }
 
 std::optional<Error> RangeSource::unstopped() const {
-  if (!stop_refused_) {
-    return std::nullopt;
-  }
-  return Error{ErrorKind::kDevice,
-               (*halted_ ? "the emergency stop was pressed, but laser and motors may still be on: "
-                         : "stopped, but laser and motors may still be on: ") +
-                   stop_refused_->what,
-               stop_refused_->where, "pull the plugs of laser and stage, or switch off their power"};
+  return stop_refused_ ? not_obeyed(std::unexpected(*stop_refused_), *halted_) : std::nullopt;
 }
 
 std::optional<Error> RangeSource::halted_before(const JobContext& job) {

@@ -12,6 +12,17 @@ constexpr auto kPause = std::chrono::milliseconds(20);
 
 }  // namespace
 
+std::optional<Error> not_obeyed(const Status& answer, bool is_halt) {
+  if (answer || answer.error().kind == ErrorKind::kCancelled) {
+    return std::nullopt;
+  }
+  return Error{ErrorKind::kDevice,
+               (is_halt ? "the emergency stop was pressed, but laser and motors may still be on: "
+                        : "stopped, but laser and motors may still be on: ") +
+                   answer.error().what,
+               answer.error().where, "pull the plugs of laser and stage, or switch off their power"};
+}
+
 StopsWhenCancelled::StopsWhenCancelled(const Device& device, const JobContext& job,
                                        const std::atomic<bool>* halted)
     : device_(device), job_(job), halted_(halted) {
@@ -33,6 +44,14 @@ Status StopsWhenCancelled::end() {
     }
   }
   return answer_;
+}
+
+std::optional<Error> StopsWhenCancelled::refused() {
+  std::optional<Error> out = not_obeyed(end(), halted());
+  if (!out && job_.cancelled() && !halted()) {
+    out = not_obeyed(device_.stop(), false);
+  }
+  return out;
 }
 
 bool StopsWhenCancelled::halted() const {

@@ -5,6 +5,7 @@
 #include <atomic>
 #include <condition_variable>
 #include <mutex>
+#include <optional>
 #include <thread>
 
 #include "core/job.h"
@@ -12,6 +13,10 @@
 #include "drivers/device.h"
 
 namespace dubsar {
+
+/// kDevice, with what to do by hand: a device that was told to stop, by its emergency stop where `is_halt`,
+/// gave this answer, by which it did not. Nothing where it obeyed.
+[[nodiscard]] std::optional<Error> not_obeyed(const Status& answer, bool is_halt);
 
 /// While it lives, a device that is driven on another thread is stopped when the job is cancelled, and by its
 /// emergency stop (its stop, where it has none) when the job is halted or `halted` is set: within some
@@ -27,6 +32,9 @@ class StopsWhenCancelled {
 
   /// Ends the watching: what the device answered when it was stopped last. OK where nobody asked for a stop.
   Status end();
+  /// Ends the watching: not_obeyed() of the last answer. Whoever made the call end may have seen that the job
+  /// was cancelled before the watch did: then the device is stopped now.
+  [[nodiscard]] std::optional<Error> refused();
 
  private:
   [[nodiscard]] bool halted() const;

@@ -113,7 +113,7 @@ bool trial(Device& rig, const Cable& camera, test::PeerProcess& stage, Pull what
   tally.not_told += !scanned && scanned.error().kind == ErrorKind::kDevice ? 0 : 1;
   tally.rows_lost += sink.builder->grid().rows > row ? 0 : 1;
   // A stage that is there is dark by now. One that went may burn on, where it has power, until its cable is
-  // back: the first word to it puts it off.
+  // back: the first word to it, the guard's or the scan's, puts it off.
   if (what == Pull::kCamera) {
     tally.lit += stage.tell("laser") == "0" ? 0 : 1;
     return camera.plug();

@@ -144,9 +144,12 @@ std::int32_t scan(dubsar_device* device, const dubsar_sink* sink, dubsar_error* 
   });
 }
 
-std::int32_t stop(dubsar_device* device, dubsar_error* /*error*/) {
-  device->stopped = true;
-  return DUBSAR_OK;
+/// A scan that runs is told, and the camera by the scan: what that answered is known when the scan is over.
+std::int32_t stop(dubsar_device* device, dubsar_error* error) {
+  return plugin::fenced(error, [&] {
+    device->stopped = true;
+    return plugin::answer(device->camera->ended(), error);
+  });
 }
 
 std::int32_t start_frames(dubsar_device* device, std::uint32_t pool, dubsar_error* error) {
@@ -197,10 +200,7 @@ void release_frame(dubsar_device* device, std::uint64_t lease) {
 }
 
 std::int32_t stop_frames(dubsar_device* device, dubsar_error* error) {
-  return plugin::fenced(error, [&]() -> std::int32_t {
-    device->camera->stop();
-    return DUBSAR_OK;
-  });
+  return plugin::fenced(error, [&] { return plugin::answer(device->camera->stop(), error); });
 }
 
 std::int32_t frame_counters(dubsar_device* device, dubsar_frame_counters* counters, dubsar_error* error) {

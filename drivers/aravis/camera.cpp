@@ -128,6 +128,7 @@ Status Camera::begin(std::uint32_t pool) {
   {
     const std::lock_guard lock(mutex_);
     stream_ = stream;
+    ended_ = {};
     chunks_ = has_encoder_chunk_ ? arv_camera_create_chunk_parser(camera_) : nullptr;
     payload_ = payload;
     counts_.pool = buffers;
@@ -262,26 +263,33 @@ void Camera::add_statistics(dubsar_frame_counters& to) const {
   }
 }
 
-void Camera::stop() {
+Status Camera::stop() {
   if (stream_ == nullptr) {
-    return;
+    return {};
   }
   if (*control_lost_ || (presence_ && presence_->gone())) {
     lose();
-    return;
+    return ended();
   }
   GErrorHolder error;
   arv_camera_stop_acquisition(camera_, error.fill());
   const std::lock_guard lock(mutex_);
+  ended_ = error ? std::unexpected(error.told("the camera does not end its stream", id_)) : Status{};
   add_statistics(counts_);
   stale_.merge(lent_);
   lent_.clear();
   g_clear_object(&chunks_);
   g_clear_object(&stream_);
+  return ended_;
+}
+
+Status Camera::ended() {
+  const std::lock_guard lock(mutex_);
+  return ended_;
 }
 
 Camera::~Camera() {
-  stop();
+  [[maybe_unused]] const Status said = stop();
   for (const auto& [lease, buffer] : stale_) {
     g_object_unref(buffer);
   }

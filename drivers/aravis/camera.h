@@ -101,7 +101,11 @@ class Camera {
   [[nodiscard]] bool is_doubtful();
   /// What is not lent is passed over.
   void give_back(std::uint64_t lease);
-  void stop();
+  /// kDevice: it may go on, its laser too. What this leaves is no stream in any case.
+  Status stop();
+  /// What stop() said last, kDevice too where the camera was lost with its stream running; OK while one runs.
+  /// From any thread.
+  [[nodiscard]] Status ended();
   Status trigger();
   /// From any thread; as counters of the interface; none is incomplete.
   [[nodiscard]] dubsar_frame_counters counters();
@@ -149,7 +153,7 @@ class Camera {
   std::map<std::string, dubsar_value> set_here_;  ///< set again over a new connection
   std::shared_ptr<std::atomic<bool>> control_lost_;
 
-  mutable std::mutex mutex_;  ///< of what give_back() and counters() look at
+  mutable std::mutex mutex_;  ///< of what give_back(), counters() and ended() look at
   ArvStream* stream_ = nullptr;
   ArvChunkParser* chunks_ = nullptr;
   bool has_encoder_chunk_ = false;
@@ -157,6 +161,7 @@ class Camera {
   std::map<std::uint64_t, ArvBuffer*> lent_;   ///< by their leases
   std::map<std::uint64_t, ArvBuffer*> stale_;  ///< lent by a stream that is no more
   std::uint64_t payload_ = 0;                  ///< bytes of a buffer
+  Status ended_;
   FrameCount count_;
   CameraClock clock_{std::nullopt};
   dubsar_frame_counters counts_{};

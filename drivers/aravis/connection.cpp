@@ -127,6 +127,9 @@ std::unexpected<Error> Camera::gone() const {
 
 Camera::Connection Camera::let_go() {
   const std::lock_guard lock(mutex_);
+  if (stream_ != nullptr) {
+    ended_ = gone();
+  }
   add_statistics(counts_);
   stale_.merge(lent_);
   lent_.clear();

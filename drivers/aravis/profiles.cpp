@@ -176,7 +176,7 @@ Status run_scan(Camera& camera, const dubsar_sink& sink, const std::atomic<bool>
   }
   const Result<Scan3d> meaning = camera.scan3d();
   if (!meaning) {
-    camera.stop();
+    [[maybe_unused]] const Status said = camera.stop();  // the camera knows
     return std::unexpected(meaning.error());
   }
   Scan scan(camera, sink, *meaning);
@@ -186,7 +186,10 @@ Status run_scan(Camera& camera, const dubsar_sink& sink, const std::atomic<bool>
   } else {
     status = fail(ErrorKind::kCancelled, "scan cancelled", camera.id());
   }
-  camera.stop();
+  const Status ended = camera.stop();
+  if (!ended && (status || status.error().kind == ErrorKind::kCancelled)) {
+    status = ended;
+  }
   scan.end(status);
   return status;
 }

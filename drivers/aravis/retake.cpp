@@ -73,6 +73,7 @@ void Camera::adopt(Camera& fresh) {
   set_here_ = std::move(fresh.set_here_);
   control_lost_ = fresh.control_lost_;
   stream_ = std::exchange(fresh.stream_, nullptr);
+  ended_ = {};
   chunks_ = std::exchange(fresh.chunks_, nullptr);
   has_encoder_chunk_ = fresh.has_encoder_chunk_;
   payload_ = fresh.payload_;

@@ -53,6 +53,17 @@ Status Controller::connect() {
   if (firmware_) {
     return {};
   }
+  if (guard_ && guard_->seeks()) {
+    guard_.reset();  // first: two that talk on one line take each other's answers
+  }
+  Status connected = connect_alone();
+  if (!connected && unheard_) {
+    let_guard_seek();
+  }
+  return connected;
+}
+
+Status Controller::connect_alone() {
   const auto out_of_reach = [this](Error error) -> Status {
     error.mend = lost_at_work_ ? kPullPlugs : error.mend;
     return std::unexpected(std::move(error));
@@ -95,7 +106,19 @@ bool Controller::drop() {
   std::ranges::fill(power_, 0.0);
   last_.reset();
   unheard_ = unheard_ || (lost_at_work_ && !heard);
+  if (unheard_) {
+    let_guard_seek();
+  }
   return heard;
+}
+
+void Controller::let_guard_seek() {
+  if (!guard_ && ways_.guard) {
+    guard_ = ways_.guard(panic_bytes_).value_or(nullptr);
+  }
+  if (guard_) {
+    guard_->seek();
+  }
 }
 
 Status Controller::settle(Status status) {

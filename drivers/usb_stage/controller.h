@@ -67,7 +67,11 @@ class Controller {
 
  private:
   Controller(Ways ways, std::string where) : ways_(std::move(ways)), where_(std::move(where)) {}
+  /// No guard seeks while it is connected.
   Status connect();
+  Status connect_alone();
+  /// For a controller that cannot be reached and was at work; called where nothing of it is open.
+  void let_guard_seek();
   /// After an error of the device: what can be sent without an answer is sent, and the link dropped. False:
   /// that was not taken.
   bool drop();

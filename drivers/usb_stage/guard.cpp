@@ -90,6 +90,27 @@ Result<std::unique_ptr<Guard>> Guard::start(const UsbName& name, const std::stri
   return std::unique_ptr<Guard>(new Guard(ends[1], process));
 }
 
+void Guard::say(char word) {
+  // SIGPIPE must not end a program whose guard was killed.
+  sigset_t pipe_signal;
+  sigset_t before;
+  sigemptyset(&pipe_signal);
+  sigaddset(&pipe_signal, SIGPIPE);
+  ::pthread_sigmask(SIG_BLOCK, &pipe_signal, &before);
+  const ssize_t sent = ::write(pipe_, &word, 1);
+  if (sent < 0 && errno == EPIPE) {
+    const timespec at_once{};
+    ::sigtimedwait(&pipe_signal, nullptr, &at_once);
+  }
+  ::pthread_sigmask(SIG_SETMASK, &before, nullptr);
+}
+
+void Guard::seek() {
+  if (!std::exchange(seeks_, true)) {
+    say('?');
+  }
+}
+
 void Guard::leave_it_to_you() {
   ::close(std::exchange(pipe_, -1));
 }
@@ -98,19 +119,7 @@ Guard::~Guard() {
   if (pipe_ < 0) {
     return;  // at work; not waited for
   }
-  constexpr char kAllWell = '.';
-  // SIGPIPE must not end a program whose guard was killed.
-  sigset_t pipe_signal;
-  sigset_t before;
-  sigemptyset(&pipe_signal);
-  sigaddset(&pipe_signal, SIGPIPE);
-  ::pthread_sigmask(SIG_BLOCK, &pipe_signal, &before);
-  const ssize_t sent = ::write(pipe_, &kAllWell, 1);
-  if (sent < 0 && errno == EPIPE) {
-    const timespec at_once{};
-    ::sigtimedwait(&pipe_signal, nullptr, &at_once);
-  }
-  ::pthread_sigmask(SIG_SETMASK, &before, nullptr);
+  say('.');  // and no signal: one that ended in the middle of its bytes would leave half of them on the line
   ::close(pipe_);
   ::waitpid(process_, nullptr, 0);
 }

@@ -10,24 +10,32 @@
 
 namespace dubsar::usb_stage {
 
-/// A process of its own that outlives this one by a moment: when this one ends in whatever way (also by
-/// SIGKILL), it opens the controller and sends the bytes that put its lasers off. A handler of signals could
-/// not: it may not call libusb, and no signal tells of SIGKILL.
+/// A process of its own that outlives this one: when this one ends in whatever way (also by SIGKILL), or says
+/// that the controller is out of reach, it opens the controller as soon as it is there and sends the bytes
+/// that put its lasers off. A handler of signals could not: it may not call libusb, and no signal tells of
+/// SIGKILL.
 class Guard {
  public:
   /// kDevice when the guard's program is not beside the plugin or does not start: then no laser may go on.
   [[nodiscard]] static Result<std::unique_ptr<Guard>> start(const UsbName& name, const std::string& panic);
-  /// Sends the guard home: the lasers are off, and it has nothing to do.
+  /// Sends the guard home, and waits until it has let go of the controller: some milliseconds, or as long as
+  /// it takes to send its bytes.
   ~Guard();
-  /// The lasers may be on and cannot be reached from here: the guard tries for some seconds by itself.
+  /// The lasers may be on and cannot be reached from here: the guard looks for the controller from now on.
+  /// Nobody else opens it until this guard is sent home.
+  void seek();
+  [[nodiscard]] bool seeks() const { return seeks_; }
+  /// The same, for longer than this program lives: the guard goes by itself, after ten minutes at most.
   void leave_it_to_you();
   Guard(const Guard&) = delete;
   Guard& operator=(const Guard&) = delete;
 
  private:
   Guard(int pipe, int process) : pipe_(pipe), process_(process) {}
+  void say(char word);
   int pipe_;
   int process_;
+  bool seeks_ = false;
 };
 
 }  // namespace dubsar::usb_stage

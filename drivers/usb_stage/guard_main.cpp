@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright The Dubsar developers
 //
-// usb_stage_guard VID:PID[:SERIAL] HEX: waits on standard input. A byte there: all is well, go home. Its end
-// without one: the program died; open the controller and send the bytes, which put its lasers off.
+// usb_stage_guard VID:PID[:SERIAL] HEX: waits on standard input. '.' there: all is well, go home. '?': the
+// controller cannot be reached, and its laser may be on; look for it, and send it the bytes, which put its
+// lasers off, as soon as it is there. The end of it, without a word: the program died; do the same.
+#include <fcntl.h>
+#include <poll.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -28,6 +31,65 @@ std::string bytes_from(const std::string& hex) {
   return out;
 }
 
+constexpr char kAllWell = '.';
+constexpr char kEnded = 0;     // the program did
+constexpr char kNothing = -1;  // was said in time
+constexpr int kForEver = -1;
+constexpr std::chrono::milliseconds kTryEvery = 250ms;
+/// Behind the program's end: whoever waits for all that it writes does not wait for the guard any longer.
+constexpr auto kTellAfter = 10s;
+constexpr auto kGiveUpAfter = 10min;
+
+/// The next word of the program.
+char listen(int timeout_ms) {
+  pollfd waiting{0, POLLIN, 0};
+  int heard = 0;
+  char said = kEnded;
+  ssize_t got = 0;
+  do {
+    heard = ::poll(&waiting, 1, timeout_ms);
+    got = heard > 0 ? ::read(0, &said, 1) : 0;
+  } while ((heard < 0 || got < 0) && errno == EINTR);
+  return heard == 0 ? kNothing : got == 1 ? said : kEnded;
+}
+
+/// Whether the bytes went out.
+bool put_off(const usb_stage::UsbName& name, const std::string& bytes) {
+  const auto link = usb_stage::UsbLink::open(name);
+  if (!link || !(*link)->write(bytes)) {
+    return false;
+  }
+  // What it answers is of no use to anybody, but must not clog its line while it works.
+  const auto enough = std::chrono::steady_clock::now() + 500ms;
+  for (auto answer = (*link)->read(100ms);
+       answer && !answer->empty() && std::chrono::steady_clock::now() < enough;) {
+    answer = (*link)->read(100ms);
+  }
+  return true;
+}
+
+/// Behind the program's end. Whether it came to that.
+bool put_off_alone(const usb_stage::UsbName& name, const std::string& bytes) {
+  const auto since = std::chrono::steady_clock::now();
+  // The kernel takes the line from the dead program within moments; a controller may be out for a restart.
+  for (bool told = false; std::chrono::steady_clock::now() < since + kGiveUpAfter;) {
+    if (put_off(name, bytes)) {
+      return true;
+    }
+    if (!told && std::chrono::steady_clock::now() > since + kTellAfter) {
+      std::fprintf(stderr, "dubsar: %s: the laser could not be put off; pull its plug\n",
+                   name.text().c_str());
+      if (const int nowhere = ::open("/dev/null", O_WRONLY | O_CLOEXEC); nowhere >= 0) {
+        ::dup2(nowhere, 2);
+        ::close(nowhere);
+      }
+      told = true;
+    }
+    std::this_thread::sleep_for(kTryEvery);
+  }
+  return false;
+}
+
 }  // namespace
 
 int main(int count, char** words) {
@@ -45,32 +107,18 @@ int main(int count, char** words) {
   for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGPIPE}) {
     std::signal(signal, SIG_IGN);
   }
-  if (::write(1, ".", 1) != 1) {
+  // Nor must one that waits for minutes hold what the program left open, or a disk that is to be taken out.
+  ::close_range(3, ~0U, 0);
+  if (::chdir("/") != 0 || ::write(1, ".", 1) != 1) {
     return 4;
   }
   ::close(1);
-  char said = 0;
-  ssize_t got = 0;
-  do {
-    got = ::read(0, &said, 1);
-  } while (got < 0 && errno == EINTR);
-  if (got == 1) {
-    return 0;
-  }
-  // The kernel takes the line from the dead program within moments; a controller may be out for a restart.
-  const auto until = std::chrono::steady_clock::now() + 10s;
-  while (std::chrono::steady_clock::now() < until) {
-    if (const auto link = usb_stage::UsbLink::open(*name); link && (*link)->write(bytes)) {
-      // What it answers is of no use to anybody, but must not clog its line while it works.
-      const auto enough = std::chrono::steady_clock::now() + 500ms;
-      for (auto answer = (*link)->read(100ms);
-           answer && !answer->empty() && std::chrono::steady_clock::now() < enough;) {
-        answer = (*link)->read(100ms);
-      }
+  char said = listen(kForEver);
+  while (said != kAllWell && said != kEnded) {
+    if (put_off(*name, bytes)) {
       return 0;
     }
-    std::this_thread::sleep_for(100ms);
+    said = listen(static_cast<int>(kTryEvery.count()));
   }
-  std::fprintf(stderr, "dubsar: %s: the laser could not be put off; pull its plug\n", words[1]);
-  return 3;
+  return said == kAllWell || put_off_alone(*name, bytes) ? 0 : 3;
 }

@@ -77,7 +77,10 @@ std::int32_t open(const char* locator, const dubsar_option* options, std::uint32
     ways.firmware = [parsed, name](usb_stage::Link& link) {
       return make_firmware(*parsed, link, name->text());
     };
-    ways.guard = [name](const std::string& panic) { return usb_stage::Guard::start(*name, panic); };
+    ways.guard = [name, opened = made.get()](const std::string& panic) {
+      // This very one: another of its kind may be there while this one is not.
+      return usb_stage::Guard::start({name->vendor, name->product, opened->serial}, panic);
+    };
     Result<std::unique_ptr<Controller>> controller = Controller::open(std::move(ways), name->text());
     if (!controller) {
       return plugin::report(error, controller.error());

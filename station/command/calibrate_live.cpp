@@ -138,6 +138,9 @@ Result<std::string> take_pictures(const LiveOptions& options, const std::string&
       return std::unexpected(taken.error());
     }
     if (context.job.cancelled()) {
+      if (!taken && taken.error().kind == ErrorKind::kDevice) {  // it does not say that the laser is off
+        return std::unexpected(taken.error());
+      }
       break;
     }
     tell(taken ? (taken->used ? "taken: " : "of no use: ") + taken->said : taken.error().line());

@@ -130,6 +130,28 @@ TEST(Calibration, ALargerDepthRangeNeverClaimsToBeKnownBetter) {
   }
 }
 
+/// A mirror that hardly moved while its pictures were taken.
+TEST(Calibration, WhatIsOpenOfAMirrorsAxisCountsForItsPoints) {
+  const RigCalibration truth = truth_of(MotionKind::kGalvanometer);
+  std::vector<CalibrationView> views;
+  Random random(7);
+  for (const RigidTransform& pose : sim::board_poses(truth, board().low_mm(), board().high_mm(), 12, 3)) {
+    const double mirror = 0.004 * (static_cast<double>(views.size() / 4) - 1);
+    views.push_back(ideal_view(truth, pose, mirror, random, numbered("pose", views.size())));
+  }
+  CalibrationOptions options = options_for(MotionKind::kGalvanometer);
+  const Result<CalibrationReport> open = calibrate_rig(views, options);
+  const Result<CalibrationReport> known = calibrate_rig(held_views(truth, true), options);
+  ASSERT_TRUE(open.has_value()) << open.error().line();
+  ASSERT_TRUE(known.has_value()) << known.error().line();
+  EXPECT_GT(open->rig.quality.volume_sigma_um, 1.2 * known->rig.quality.volume_sigma_um);
+  options.most_volume_sigma_um = 0.95 * open->rig.quality.volume_sigma_um;
+  const Result<CalibrationReport> refused = calibrate_rig(views, options);
+  ASSERT_FALSE(refused.has_value());
+  EXPECT_NE(refused.error().what.find("points would be known to"), std::string::npos);
+  EXPECT_NE(refused.error().mend.find("let the mirror go from"), std::string::npos) << refused.error().mend;
+}
+
 TEST(Calibration, RefusesAStageThatTheBoardDidNotFollow) {
   const RigCalibration truth = truth_of(MotionKind::kTurntable);
   CalibrationOptions options = options_for(MotionKind::kTurntable);

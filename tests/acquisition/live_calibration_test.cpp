@@ -285,6 +285,42 @@ TEST_F(Live, ACancelledOneEndsTheMoveAndLightsNothing) {
   EXPECT_EQ(live->stops(), 0);
 }
 
+/// Whoever pressed it is told what the scans of this rig would tell, and not that all is well.
+TEST_F(Live, AStopThatTheStageDoesNotObeyIsTold) {
+  Result<LiveCalibration> live = start();
+  ASSERT_TRUE(live.has_value());
+  held_ = poses(1)[0];
+  for (const bool halted : {false, true}) {
+    const std::string said = halted ? "the emergency stop was pressed, but laser and motors may still be on: "
+                                    : "stopped, but laser and motors may still be on: ";
+    for (const bool at_stops : {false, true}) {
+      bench_.deaf = true;
+      bench_.stale = at_stops ? 0 : 1 << 30;
+      bench_.far = at_stops;
+      JobContext job;
+      std::jthread presses([&] {
+        std::this_thread::sleep_for(std::chrono::milliseconds(50));
+        halted ? job.halt() : job.cancel();
+      });
+      const auto stopped = at_stops ? live->take_stops(job) : live->take_pose(job);
+      ASSERT_FALSE(stopped.has_value());
+      EXPECT_EQ(stopped.error().kind, ErrorKind::kDevice);
+      EXPECT_EQ(stopped.error().what, said + "the controller does not answer");
+      EXPECT_NE(stopped.error().mend.find("pull the plugs"), std::string::npos);
+    }
+  }
+}
+
+TEST_F(Live, AStopOfItsHomingThatTheStageDoesNotObeyIsTold) {
+  bench_.deaf = true;
+  JobContext job;
+  job.cancel();
+  const auto stopped = LiveCalibration::start(plan_, test::camera_of(bench_), test::stage_of(bench_), job);
+  ASSERT_FALSE(stopped.has_value());
+  EXPECT_EQ(stopped.error().what,
+            "stopped, but laser and motors may still be on: the controller does not answer");
+}
+
 TEST_F(Live, ACancelledOneWaitsForNoPicture) {
   Result<LiveCalibration> live = start();
   ASSERT_TRUE(live.has_value());

@@ -148,6 +148,23 @@ TEST_F(RangeSourceTest, AHaltKeepsTheRowsAndNothingMovesUntilItIsOpenedAnew) {
   EXPECT_TRUE(open("odd:1").next({}, job_));
 }
 
+/// A camera has not answered to its stop before its scan is over.
+TEST_F(RangeSourceTest, AStopThatIsNotObeyedAtTheScansEndIsTold) {
+  for (const bool halted : {false, true}) {
+    JobContext job;
+    RangeSource source = open("odd:1?mode=burns");
+    const auto stopped = source.next(
+        [&](const RangeGrid&, int row) { row < 20 ? void()
+                                         : halted ? job.halt()
+                                                  : job.cancel(); }, job);
+    ASSERT_FALSE(stopped);
+    EXPECT_EQ(stopped.error().kind, ErrorKind::kDevice);
+    EXPECT_THAT(stopped.error().line(),
+                HasSubstr("laser and motors may still be on: the camera does not end"));
+    EXPECT_EQ(source.take_partial()->rows, 21);
+  }
+}
+
 TEST_F(RangeSourceTest, AScanWithoutProfilesIsAnError) {
   RangeSource source = open("odd:1?mode=empty");
   EXPECT_THAT(source.next({}, job_).error().line(), HasSubstr("without a single profile"));

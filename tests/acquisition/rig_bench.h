@@ -42,6 +42,7 @@ struct RigBench {
   bool can_home = false;
   double speed = 0;               ///< that the last move was asked for
   bool burns_on = false;          ///< the controller obeys no more once its laser is lit
+  bool deaf = false;              ///< it does not answer to a stop
   std::atomic<bool> far = false;  ///< a move ends by nothing but a stop
   int stale = 0;                  ///< frames of long ago that the camera still holds
   std::mutex line;                ///< of laser and asked: a stop comes from another thread
@@ -265,20 +266,24 @@ inline const dubsar_driver& stage_driver() {
     };
     out.stop = [](dubsar_device* device, dubsar_error* error) -> std::int32_t {
       const std::scoped_lock lock(bench_of(device).line);
-      if (bench_of(device).burns_on && bench_of(device).laser > 0) {
+      bench_of(device).far = false;  // whoever waits for its end is let go
+      if (bench_of(device).deaf || (bench_of(device).burns_on && bench_of(device).laser > 0)) {
         return plugin::report(error, DUBSAR_DEVICE, "the controller does not answer", "bench",
                               "see to its cable");
       }
       bench_of(device).laser = 0;
       bench_of(device).asked += 'S';
-      bench_of(device).far = false;
       return DUBSAR_OK;
     };
-    out.emergency_stop = [](dubsar_device* device, dubsar_error*) -> std::int32_t {
+    out.emergency_stop = [](dubsar_device* device, dubsar_error* error) -> std::int32_t {
       const std::scoped_lock lock(bench_of(device).line);
+      bench_of(device).far = false;
+      if (bench_of(device).deaf) {
+        return plugin::report(error, DUBSAR_DEVICE, "the controller does not answer", "bench",
+                              "see to its cable");
+      }
       bench_of(device).laser = 0;
       bench_of(device).asked += 'E';
-      bench_of(device).far = false;
       return DUBSAR_OK;
     };
     return out;

@@ -101,6 +101,9 @@ Device gone_range_camera() {
     out.scan = [](dubsar_device*, const dubsar_sink*, dubsar_error* error) -> std::int32_t {
       return plugin::report(error, DUBSAR_DEVICE, "the camera is gone", "bench", "plug it in");
     };
+    out.stop = [](dubsar_device*, dubsar_error* error) -> std::int32_t {
+      return plugin::report(error, DUBSAR_DEVICE, "the camera does not answer", "bench", "plug it in");
+    };
     return out;
   }();
   static int any = 0;
@@ -116,6 +119,19 @@ TEST_F(RigLaser, ARangeCameraThatFailsEndsTheMotionBeforeTheLaserIsPutOff) {
   Collect sink;
   EXPECT_EQ(made->scan(sink).error().kind, ErrorKind::kDevice);
   EXPECT_EQ(bench.asked, "LSD");
+}
+
+/// The stage obeys; the camera may have a laser of its own.
+TEST_F(RigLaser, AStopThatARangeCameraDoesNotObeyIsTold) {
+  file.motion = RigMotion{};
+  file.speed = 5;
+  Result<RangeRig> made = RangeRig::make(file, gone_range_camera(), test::stage_of(bench), "rig.toml");
+  ASSERT_TRUE(made.has_value()) << made.error().line();
+  for (const Status& said : {made->stop(), made->halt()}) {
+    ASSERT_FALSE(said.has_value());
+    EXPECT_EQ(said.error().what, "the camera does not answer");
+  }
+  EXPECT_EQ(bench.asked, "SE");
 }
 
 TEST_F(RigLaser, ALaserOfARangeCameraThatCannotBePutOffIsTold) {

@@ -69,6 +69,41 @@ TEST_F(Resending, WithoutResendTheSameLossLeavesGaps) {
   EXPECT_EQ(peer_->tell("resent"), "0");
 }
 
+/// It may have a laser of its own, which then burns on.
+TEST_F(Resending, ACameraThatDoesNotEndItsStreamIsTold) {
+  Device device = open_with({{"rows", "400"}}).value();
+  EXPECT_TRUE(device.stop());
+  ASSERT_EQ(peer_->tell("burn on"), "ok");
+  for (const bool to_its_end : {true, false}) {
+    Rows rows;
+    rows.most = to_its_end ? 1000 : 80;
+    const auto scanned = device.scan(rows);
+    ASSERT_FALSE(scanned);
+    EXPECT_EQ(scanned.error().kind, to_its_end ? ErrorKind::kDevice : ErrorKind::kCancelled);
+    const Status stopped = device.stop();
+    ASSERT_FALSE(stopped);
+    EXPECT_EQ(stopped.error().kind, ErrorKind::kDevice);
+    EXPECT_NE(stopped.error().line().find("does not end its stream"), std::string::npos)
+        << stopped.error().line();
+    EXPECT_TRUE(!to_its_end || scanned.error().what == stopped.error().what) << scanned.error().what;
+  }
+  ASSERT_EQ(peer_->tell("obey"), "ok");
+  Rows rows;
+  const auto scanned = device.scan(rows);
+  EXPECT_TRUE(scanned) << scanned.error().line();
+  EXPECT_TRUE(device.stop());
+}
+
+TEST_F(Resending, ACameraThatIsLostWithItsStreamRunningHasNotStopped) {
+  Device device = open_with({{"rows", "24000"}}).value();
+  Rows rows;
+  rows.each = [&] { rows.rows.size() == 100 ? void(peer_->tell("quiet")) : void(); };
+  ASSERT_FALSE(device.scan(rows));
+  const Status stopped = device.stop();
+  ASSERT_FALSE(stopped);
+  EXPECT_EQ(stopped.error().kind, ErrorKind::kDevice);
+}
+
 /// So does one that heard nothing for too long: the cable was out, or this machine slept, between two scans.
 TEST_F(Resending, ACameraThatForgotWhoHasControlIsTakenAnew) {
   Device device = open_with({}).value();

@@ -2,8 +2,10 @@
 // Copyright The Dubsar developers
 // Every way to stop a rig, from the key, the call or the signal to the board of the emulated stage: it
 // stands, its laser is off, and what was scanned is kept, with what is known of the calibration.
+#include <fcntl.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <chrono>
 #include <csignal>
@@ -162,6 +164,31 @@ TEST_P(RigStop, ASignalToTheCommand) {
 }
 INSTANTIATE_TEST_SUITE_P(Each, RigStop, testing::Values(SIGINT, SIGTERM, SIGHUP),
                          [](const auto& one) { return std::string("Signal") + sigabbrev_np(one.param); });
+
+/// The pictures of a calibration are taken by the same stage.
+TEST_F(RigStop, ASignalToACalibrationWhoseStageDoesNotObey) {
+  int ends[2];
+  ASSERT_EQ(::pipe2(ends, O_CLOEXEC), 0);
+  const int before = ::dup(STDIN_FILENO);
+  ::dup2(ends[0], STDIN_FILENO);
+  test::RunningCommand running({"calibrate", "--rig", scanner_->rig_file().string(), "--board",
+                                "charuco:9x6:5:3.7", (folder_.path() / "pictures").string()});
+  ::dup2(before, STDIN_FILENO);
+  ASSERT_TRUE(running.says("s: the board lies on the stage")) << running.log_until_now();
+  const double home = at();
+  ASSERT_EQ(::write(ends[1], "s\n", 2), 2);
+  while (at() == home) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+  ASSERT_EQ(stage->tell("mute"), "ok");
+  running.send(SIGINT);
+  const test::Outcome stopped = running.wait();
+  EXPECT_EQ(stopped.status, 3) << stopped.err;
+  EXPECT_THAT(stopped.err, HasSubstr("stopped, but laser and motors may still be on: "));
+  for (const int end : {ends[0], ends[1], before}) {
+    ::close(end);
+  }
+}
 
 TEST_F(RigStop, TheKeyOfTheWindow) {
   const test::Display display;

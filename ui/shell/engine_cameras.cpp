@@ -127,6 +127,7 @@ constexpr EnginePhrase kCameras[] = {
     {"start the frames first", "zuerst die Bilder starten"},
     {"no stream runs", "es läuft kein Bildstrom"},
     {"the stream does not start", "der Bildstrom fängt nicht an"},
+    {"the camera does not end its stream", "die Kamera beendet ihren Bildstrom nicht"},
     {"the stream broke off", "der Bildstrom ist abgerissen"},
     {"the camera opens no stream", "die Kamera öffnet keinen Bildstrom"},
     {"the camera has no buffers to map", "die Kamera hat keine Puffer"},

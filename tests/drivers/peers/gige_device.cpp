@@ -282,7 +282,7 @@ void GigeDevice::answer(const Bytes& ask, const sockaddr_in& to) {
         break;
       }
       for (std::size_t k = 0; k + 8 <= size; k += 8) {
-        if (refuses(word(k), word(k + 4))) {
+        if (refuses(word(k), word(k + 4)) || ends_in_vain(word(k), word(k + 4))) {
           status = kInvalidParameter;
           break;
         }
@@ -320,7 +320,7 @@ void GigeDevice::answer(const Bytes& ask, const sockaddr_in& to) {
         status = kAccessDenied;
         break;
       }
-      if (size == 8 && refuses(word(0), word(4))) {
+      if (size == 8 && (refuses(word(0), word(4)) || ends_in_vain(word(0), word(4)))) {
         status = kInvalidParameter;
         break;
       }
@@ -343,6 +343,10 @@ void GigeDevice::answer(const Bytes& ask, const sockaddr_in& to) {
   out.push_back(ask[7]);
   out.insert(out.end(), data.begin(), data.end());
   ::sendto(control_, out.data(), out.size(), 0, reinterpret_cast<const sockaddr*>(&to), sizeof to);
+}
+
+bool GigeDevice::ends_in_vain(std::uint32_t at, std::uint32_t value) const {
+  return burns_on && at == kAcquisition && value == 0;
 }
 
 void GigeDevice::forget() {
@@ -375,6 +379,9 @@ int serve_gige(GigeDevice& device) {
     }
     if (line == "lax") {
       device.lax = true;
+    }
+    if (line == "burn on" || line == "obey") {
+      device.burns_on = line == "burn on";
     }
     if (line == "restart") {
       device.restart();

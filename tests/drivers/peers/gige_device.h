@@ -50,6 +50,7 @@ class GigeDevice {
   /// It obeys whoever has the address of the one in control, as some cameras do, and takes its time to end a
   /// stream.
   std::atomic<bool> lax = false;
+  std::atomic<bool> burns_on = false;  ///< it does not obey when its acquisition is to end
   std::atomic<int> resent = 0;
 
  protected:
@@ -83,6 +84,7 @@ class GigeDevice {
   [[nodiscard]] Block packed(std::uint16_t id, Picture& picture) const;
   void resend(const std::uint8_t* ask);
   void answer(const Bytes& ask, const sockaddr_in& to);
+  [[nodiscard]] bool ends_in_vain(std::uint32_t at, std::uint32_t value) const;
   /// Whether it takes its time over this, and answers later.
   bool puts_off(const Bytes& ask, const sockaddr_in& to);
 

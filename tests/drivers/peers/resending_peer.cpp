@@ -4,7 +4,8 @@
 // resending_peer SERIAL LOSS: a range camera of our own on 127.0.0.1: it loses packets at the ratio LOSS,
 // sends them again when it is asked to, and puts the count of an encoder behind each frame (chunk data). Says
 // "ready"; commands: resent (packets sent again), quiet (takes no more packets, sends none), forget (who has
-// the control), restart (as at switching on), lax (obeys whoever has the address of the one in control).
+// the control), restart (as at switching on), lax (obeys whoever has the address of the one in control), burn
+// on (refuses to end its acquisition), obey.
 #include <atomic>
 #include <chrono>
 #include <cstdio>

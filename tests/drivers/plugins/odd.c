@@ -4,6 +4,7 @@
 /* A driver in plain C that behaves as its option `mode` says: what a good device does on a bad day, and what
  * a faulty driver does. Two scans, then the end, for the modes that come to one. */
 #include <math.h>
+#include <stdatomic.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -14,6 +15,7 @@ enum { COLS = 8, ROWS = 6 };
 struct dubsar_device {
   char mode[16];
   int scans;
+  atomic_int scanning;
   double gain;
   int64_t average;
   char light[8];
@@ -21,16 +23,17 @@ struct dubsar_device {
 };
 
 static int32_t describe_options(dubsar_setting_callback callback, void* user, dubsar_error* error) {
-  const dubsar_setting mode = {.struct_size = sizeof mode,
-                               .type = DUBSAR_TYPE_CHOICE,
-                               .flags = DUBSAR_SETTING_WRITABLE,
-                               .key = "mode",
-                               .help = "how to behave",
-                               .choices =
-                                   "good|ragged|fail|forever|silent|cols|points|late|empty|twisted|coarse|"
-                                   "deep|high|ancient|largest",
-                               .minimum = 1,
-                               .maximum = 0};
+  const dubsar_setting mode = {
+      .struct_size = sizeof mode,
+      .type = DUBSAR_TYPE_CHOICE,
+      .flags = DUBSAR_SETTING_WRITABLE,
+      .key = "mode",
+      .help = "how to behave",
+      .choices =
+          "good|ragged|fail|forever|burns|silent|cols|points|late|empty|twisted|coarse|"
+          "deep|high|ancient|largest",
+      .minimum = 1,
+      .maximum = 0};
   (void)error;
   return callback(user, &mode) != 0 ? DUBSAR_CANCELLED : DUBSAR_OK;
 }
@@ -152,7 +155,7 @@ static void fill_row(float* x, float* y, float* z, int64_t row) {
   }
 }
 
-static int32_t scan(dubsar_device* device, const dubsar_sink* sink, dubsar_error* error) {
+static int32_t scan_rows(dubsar_device* device, const dubsar_sink* sink, dubsar_error* error) {
   const int ragged = strcmp(device->mode, "ragged") == 0;
   const int points = strcmp(device->mode, "points") == 0;
   float x[COLS], y[COLS], z[COLS];
@@ -192,9 +195,10 @@ static int32_t scan(dubsar_device* device, const dubsar_sink* sink, dubsar_error
   if (sink->begin(sink->user, &info) != 0) {
     return plain_cancelled(sink, &end, error);
   }
-  const int64_t rows = strcmp(device->mode, "forever") == 0 ? INT64_MAX
-                       : strcmp(device->mode, "empty") == 0 ? 0
-                                                            : ROWS;
+  const int burns = strcmp(device->mode, "burns") == 0;
+  const int64_t rows = burns || strcmp(device->mode, "forever") == 0 ? INT64_MAX
+                       : strcmp(device->mode, "empty") == 0          ? 0
+                                                                     : ROWS;
   for (int64_t row = 0; row < rows; ++row) {
     dubsar_profile profile = {
         .struct_size = sizeof profile, .count = COLS, .row = row, .x = x, .y = y, .z = z};
@@ -229,6 +233,20 @@ static int32_t scan(dubsar_device* device, const dubsar_sink* sink, dubsar_error
   return DUBSAR_OK;
 }
 
+static int32_t scan(dubsar_device* device, const dubsar_sink* sink, dubsar_error* error) {
+  device->scanning = 1;
+  const int32_t code = scan_rows(device, sink, error);
+  device->scanning = 0;
+  return code;
+}
+
+/* In the mode "burns" it is told while the scan runs, and has not obeyed when it is over. */
+static int32_t stop(dubsar_device* device, dubsar_error* error) {
+  return strcmp(device->mode, "burns") == 0 && !device->scanning
+             ? plain_problem(error, DUBSAR_DEVICE, "the camera does not end its stream")
+             : DUBSAR_OK;
+}
+
 const dubsar_driver* dubsar_driver_entry(void) {
   static const dubsar_driver driver = {
       .abi_version = DUBSAR_DRIVER_ABI_VERSION,
@@ -247,6 +265,7 @@ const dubsar_driver* dubsar_driver_entry(void) {
       .set_setting = set_setting,
       .place = place,
       .scan = scan,
+      .stop = stop,
   };
   return &driver;
 }
