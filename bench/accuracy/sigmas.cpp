@@ -2,10 +2,12 @@
 // Copyright The Dubsar developers
 //
 //   dubsar-sigmas [--seed S --tablets N --spacing 0.05 ... --noise 0.02 ... --views 12 --width 13]
-//                 [--pose-error 0 --poses-trusted --other-spacing 0]
-//     simulated scans, true poses: error of the mesh's vertices over their own sigma, RMS (none counts as
-//     more than 10) and the quantiles of 68.3 and 95.4 % (1 and 2 of a normal distribution), by what a vertex
-//     is: of one scan, by its incidence; of several; interpolated; within 0.2 mm of wedge edges or not
+//                 [--pose-error 0 --poses-trusted | --registered] [--other-spacing 0]
+//     simulated scans, true poses, poses that are off independently of each other or as registration finds
+//     them, in the frame of the scan that it holds: error of the mesh's vertices over their own sigma, RMS
+//     (none counts as more than 10) and the quantiles of 68.3 and 95.4 % (1 and 2 of a normal distribution),
+//     by what a vertex is: of one scan, by its incidence; of several; interpolated; within 0.2 mm of wedge
+//     edges or not
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
@@ -17,6 +19,7 @@
 
 #include "bench/support/mesh_score.h"
 #include "bench/support/options.h"
+#include "bench/support/registered_poses.h"
 #include "bench/support/statistics.h"
 #include "bench/support/true_scans.h"
 #include "core/mesh_query.h"
@@ -39,6 +42,7 @@ struct Arguments {
   double width_mm = 13;
   double pose_error_mm = 0;
   bool poses_trusted = false;
+  bool registered = false;
   double other_spacing_mm = 0;
 };
 
@@ -95,14 +99,30 @@ void measure(const Arguments& args, std::uint64_t seed, double spacing_mm, doubl
     scans = true_scans(options, scanning);
   }
   Random random(seed_for(seed, 77));
+  const std::vector<ScanPose> found = args.registered ? registered_poses(scans) : std::vector<ScanPose>{};
+  RigidTransform tablet_from_model;
+  for (const ScanPose& pose : found) {
+    const auto k = static_cast<std::size_t>(pose.id);
+    if (pose.status == PoseStatus::kRegistered && pose.sigma_mm == 0) {
+      tablet_from_model = scans[k].tablet_from_scanner * pose.model_from_scanner.inverse();
+      break;
+    }
+  }
   std::vector<SampleFlags> flags(scans.size());
   ClearedMap map;
   for (std::size_t k = 0; k < scans.size(); ++k) {
     RigidTransform pose = scans[k].tablet_from_scanner;
     pose.translation_mm += args.pose_error_mm * random.normal3().normalized();
+    double sigma_mm = args.pose_error_mm;
+    if (args.registered) {
+      if (found[k].status != PoseStatus::kRegistered) {
+        continue;
+      }
+      pose = tablet_from_model * found[k].model_from_scanner;
+      sigma_mm = found[k].sigma_mm;
+    }
     flags[k] = flag_sparse(*scans[k].grid);
-    map.add({static_cast<int>(k), scans[k].grid.get(), &flags[k], pose,
-             args.poses_trusted ? 0.0 : args.pose_error_mm});
+    map.add({static_cast<int>(k), scans[k].grid.get(), &flags[k], pose, args.poses_trusted ? 0.0 : sigma_mm});
   }
   double estimated_um = 0;
   for (const PlacedScan& scan : map.scans()) {
@@ -144,6 +164,8 @@ int main(int argc, char** argv) {
   app.add_option("--width", args.width_mm);
   app.add_option("--pose-error", args.pose_error_mm);
   app.add_flag("--poses-trusted", args.poses_trusted, "as if the poses had no error");
+  app.add_flag("--registered", args.registered, "poses and their errors as registration has them")
+      ->excludes("--pose-error");
   app.add_option("--other-spacing", args.other_spacing_mm, "of every other scan");
   if (const auto status = ends_with(app, argc, argv)) {
     return *status;
