@@ -14,6 +14,7 @@
 #include "registration/last_judgement.h"
 #include "registration/pin_advice.h"
 #include "registration/registrar.h"
+#include "registration/scan_step.h"
 #include "registration/scan_stretch.h"
 #include "registration/seen_pin.h"
 #include "registration/self_similarity.h"
@@ -108,7 +109,7 @@ class ScanModel {
     std::string hint_reason;   ///< why its hint led to no pose
     std::string fault_reason;  ///< why it was taken out of the model when it was last in it
     bool has_moved = false;    ///< while it was scanned, as found when it was last looked at in the model
-    std::string warning;    ///< what of it was off when all were in place (lengths, pins), while it is there
+    std::string warning;       ///< what of it was off when all were in place, while it is there
     std::string suspicion;  ///< what unit it may be in when it joins nothing; empty for nothing in particular
     PoseStatus outcome = PoseStatus::kFailed;
     double rms_mm = 0, overlap = 0, stage_sigma_mm = 0;
@@ -227,12 +228,18 @@ class ScanModel {
   [[nodiscard]] std::optional<Fault> fault_of(int id);
   /// Says what is wrong with scans of the main group although their poses are sure.
   void warn();
-  /// Marks which of these are of another size or shape than the rest.
-  void warn_of_stretched(const std::vector<int>& ids);
+  void add_warning(int id, const std::string& said);
+  /// Marks which of these are of another size or shape than the rest; of `sound` ones only, as what moved
+  /// while it was scanned looks stretched or sheared, too.
+  void warn_of_stretched(const std::vector<int>& ids, std::vector<int> sound);
+  /// Marks which moved while they were scanned, by too little to be put out for it. Returns the others.
+  [[nodiscard]] std::vector<int> warn_of_steps(const std::vector<int>& ids);
   /// Marks which show labelled pins elsewhere than the rest.
   void warn_of_pins(const std::vector<int>& ids);
   /// How the scan, where it lies, is stretched against these others; `ids` may hold it.
   [[nodiscard]] std::optional<ScanStretch> stretch_among(int id, std::vector<int> ids) const;
+  /// How the scan, where it lies, moved against these others; `ids` may hold it.
+  [[nodiscard]] std::optional<ScanStep> step_among(int id, std::vector<int> ids) const;
   [[nodiscard]] std::string name_of(int id) const;  ///< for people
   /// Said of what is wrong with a scan where these, but for it, are one other only; empty where they are
   /// more.

@@ -101,7 +101,7 @@ void ScanModel::warn() {
     scan.warning.clear();
   }
   const std::vector<int> ids = members(main_group());
-  warn_of_stretched(ids);
+  warn_of_stretched(ids, warn_of_steps(ids));
   warn_of_pins(ids);
   for (const int id : ids) {
     if (const std::string& warning = scans_.at(id).warning; !warning.empty()) {
@@ -142,12 +142,11 @@ void ScanModel::warn_of_pins(const std::vector<int>& ids) {
   }
   const std::vector<std::string> said = contradicted_labels(pins);
   for (std::size_t k = 0; k < ids.size(); ++k) {
-    std::string& warning = scans_.at(ids[k]).warning;
-    warning += (warning.empty() || said[k].empty() ? "" : "; ") + said[k];
+    add_warning(ids[k], said[k]);
   }
 }
 
-void ScanModel::warn_of_stretched(const std::vector<int>& ids) {
+void ScanModel::warn_of_stretched(const std::vector<int>& ids, std::vector<int> sound) {
   std::vector<std::optional<ScanStretch>> stretches(ids.size());
   parallel_for_each_index(
       ids.size(),
@@ -166,13 +165,12 @@ void ScanModel::warn_of_stretched(const std::vector<int>& ids) {
   // The worst first: what a scan shows against one that is off may be that one's.
   std::vector<std::size_t> accused;
   for (std::size_t k = 0; k < ids.size(); ++k) {
-    if (stretches[k] && stretches[k]->is_off()) {
+    if (stretches[k] && stretches[k]->is_off() && std::ranges::find(sound, ids[k]) != sound.end()) {
       accused.push_back(k);
     }
   }
   std::ranges::stable_sort(accused, std::ranges::greater{},
                            [&](std::size_t k) { return stretches[k]->largest(); });
-  std::vector<int> sound = ids;
   for (const std::size_t k : accused) {
     if (sound.size() < ids.size()) {
       const std::optional<ScanStretch> alone = stretch_among(ids[k], sound);
@@ -181,7 +179,7 @@ void ScanModel::warn_of_stretched(const std::vector<int>& ids) {
       }
     }
     std::erase(sound, ids[k]);
-    scans_.at(ids[k]).warning = reason_of(*stretches[k]) + only_one(ids, ids[k]);
+    add_warning(ids[k], reason_of(*stretches[k]) + only_one(ids, ids[k]));
   }
 }
 
@@ -192,6 +190,52 @@ std::optional<ScanStretch> ScanModel::stretch_among(int id, std::vector<int> ids
   const ModelFit fit =
       judge_in_model(*scan.features.surface, model, scan.group_from_scanner, options_.search.fit);
   return find_stretch(*scan.features.surface, model, fit);
+}
+
+std::vector<int> ScanModel::warn_of_steps(const std::vector<int>& ids) {
+  std::vector<std::optional<ScanStep>> steps(ids.size());
+  parallel_for_each_index(
+      ids.size(),
+      [&](std::size_t k) {
+        if (const std::optional<InGroup> placed = in_group(ids[k])) {
+          steps[k] = find_step(*placed->scan.surface, model_scans(placed->others), placed->fit);
+        }
+      },
+      1);
+  const auto is_told = [&](const std::optional<ScanStep>& step, int id) {
+    return step && step->is_told(scans_.at(id).features.surface->fine->spacing_mm);
+  };
+  // The worst first: beside a scan that moved, others look moved, too.
+  std::vector<std::size_t> accused;
+  for (std::size_t k = 0; k < ids.size(); ++k) {
+    if (is_told(steps[k], ids[k])) {
+      accused.push_back(k);
+    }
+  }
+  std::ranges::stable_sort(accused, std::ranges::greater{}, [&](std::size_t k) { return steps[k]->chi2; });
+  std::vector<int> still = ids;
+  for (const std::size_t k : accused) {
+    const std::optional<ScanStep> step = still.size() < ids.size() ? step_among(ids[k], still) : steps[k];
+    if (is_told(step, ids[k])) {
+      std::erase(still, ids[k]);
+      add_warning(ids[k], reason_of(*step));
+    }
+  }
+  return still;
+}
+
+std::optional<ScanStep> ScanModel::step_among(int id, std::vector<int> ids) const {
+  std::erase(ids, id);
+  const Scan& scan = scans_.at(id);
+  const std::vector<ModelScan> model = model_of(ids);
+  const ModelFit fit =
+      judge_in_model(*scan.features.surface, model, scan.group_from_scanner, options_.search.fit);
+  return find_step(*scan.features.surface, model, fit);
+}
+
+void ScanModel::add_warning(int id, const std::string& said) {
+  std::string& warning = scans_.at(id).warning;
+  warning += (warning.empty() || said.empty() ? "" : "; ") + said;
 }
 
 std::string ScanModel::only_one(std::vector<int> ids, int id) const {

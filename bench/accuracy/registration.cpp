@@ -3,8 +3,9 @@
 //
 // dubsar-registration: registration of simulated tablets against the truth, with nothing told of the poses.
 // One line per tablet, then the sums: how many scans and tablets were registered, how far the surface is
-// displaced after relaxation, whether the covariances are what they claim, how long a scan took. Exits 1 when
-// an accepted pose is wrong.
+// displaced after relaxation, whether the covariances are what they claim, how many scans came with a
+// warning, of those that moved in the middle of the scan (--moved-every) and of the others, how long a scan
+// took. Exits 1 when an accepted pose is wrong.
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -15,9 +16,11 @@
 #include <vector>
 
 #include "bench/accuracy/gauge.h"
+#include "bench/support/moved_scan.h"
 #include "bench/support/options.h"
 #include "bench/support/statistics.h"
 #include "bench/support/true_scans.h"
+#include "core/random.h"
 #include "core/stage_times.h"
 #include "registration/registrar.h"
 #include "registration/verify_pose.h"
@@ -37,12 +40,15 @@ struct Arguments {
   double noise_mm = 0.02;
   std::vector<double> size_mm;
   int gripped_every = 0;
+  int moved_every = 0;
+  double moved_mm = 0.15;
   bool verbose = false;
   bool at_truth = false;
 };
 
 struct Sums {
   int tablets = 0, whole_tablets = 0, scans = 0, registered = 0, unsure = 0, failed = 0, wrong = 0;
+  int moved = 0, moved_registered = 0, moved_warned = 0, warned = 0;  ///< `warned`: of the others
   std::vector<double> displacement_mm;  ///< of points on the surface, scans of the model only
   std::vector<double> tablet_rms_mm;
   std::vector<double> nees;  ///< normalised squared error of each registered pose, per degree of freedom
@@ -140,14 +146,25 @@ void run(const Arguments& arguments, std::uint64_t seed, Sums& sums) {
   const bench::Pins pins = arguments.pins == "labelled"     ? bench::Pins::kLabelled
                            : arguments.pins == "unlabelled" ? bench::Pins::kUnlabelled
                                                             : bench::Pins::kNone;
-  const std::vector<bench::TrueScan> scans =
-      bench::true_scans(tablet, {.spacing_mm = arguments.spacing_mm,
-                                 .noise_mm = arguments.noise_mm,
-                                 .views = arguments.views,
-                                 .seed = seed,
-                                 .pins = pins,
-                                 .gripped_every = arguments.gripped_every});
+  std::vector<bench::TrueScan> scans = bench::true_scans(tablet, {.spacing_mm = arguments.spacing_mm,
+                                                                  .noise_mm = arguments.noise_mm,
+                                                                  .views = arguments.views,
+                                                                  .seed = seed,
+                                                                  .pins = pins,
+                                                                  .gripped_every = arguments.gripped_every});
   const PinSet pin_set = bench::pin_set(scans, pins);
+  const auto has_moved = [&](int k) {
+    return arguments.moved_every > 0 && k % arguments.moved_every == arguments.moved_every / 2;
+  };
+  Random random(seed_for(seed, 78));
+  for (int k = 0; k < arguments.views; ++k) {
+    if (has_moved(k)) {
+      auto& scan = scans[static_cast<std::size_t>(k)];
+      const Eigen::Vector3d shift_mm = arguments.moved_mm * random.normal3().normalized();
+      const Eigen::Vector3d turn_deg = 0.2 * random.normal3().normalized();
+      scan.grid = bench::moved_scan(*scan.grid, {turn_deg, shift_mm, random.uniform(0.3, 0.7)});
+    }
+  }
   if (arguments.at_truth) {
     judge_truth(scans);
     list_fits(scans, seed);
@@ -180,10 +197,20 @@ void run(const Arguments& arguments, std::uint64_t seed, Sums& sums) {
   for (const ScanPose& pose : poses) {
     const bench::TrueScan& scan = scans[static_cast<std::size_t>(pose.id)];
     if (arguments.verbose) {
-      std::printf("    %2d %-10s overlap %.2f sigma %.4f rms %.4f %s\n", pose.id, to_string(pose.status),
-                  pose.overlap, pose.sigma_mm, pose.rms_mm, pose.reason.c_str());
+      std::printf("    %2d %-10s overlap %.2f sigma %.4f rms %.4f %s%s\n", pose.id, to_string(pose.status),
+                  pose.overlap, pose.sigma_mm, pose.rms_mm, pose.reason.c_str(), pose.warning.c_str());
     }
-    if (pose.status != PoseStatus::kRegistered) {
+    const bool is_registered = pose.status == PoseStatus::kRegistered;
+    if (has_moved(pose.id)) {
+      ++sums.moved;
+      sums.moved_registered += is_registered ? 1 : 0;
+      sums.moved_warned += pose.warning.empty() ? 0 : 1;
+    } else if (!pose.warning.empty()) {
+      ++sums.warned;
+      std::printf("WARNED seed %llu scan %d: %s\n", static_cast<unsigned long long>(seed), pose.id,
+                  pose.warning.c_str());
+    }
+    if (!is_registered) {
       (pose.status == PoseStatus::kUnsure ? unsure : failed) += 1;
       continue;
     }
@@ -265,6 +292,9 @@ int main(int argc, char** argv) {
   app.add_option("--gripped-every", arguments.gripped_every,
                  "fingers hold the tablet in each so manieth scan")
       ->check(CLI::Range(0, 100));
+  app.add_option("--moved-every", arguments.moved_every, "each so manieth scan moves in its middle")
+      ->check(CLI::Range(0, 100));
+  app.add_option("--moved", arguments.moved_mm, "by so much, mm, and 0.2 degrees");
   app.add_flag("-v,--verbose", arguments.verbose, "each scan");
   app.add_flag("--at-truth", arguments.at_truth,
                "also judge the true poses and list every pose that pairs are found in");
@@ -284,11 +314,12 @@ int main(int argc, char** argv) {
       "%d\n"
       "displaced rms %.1f um, 95 %% %.1f um; normalised squared error mean %.2f, median %.2f (1 and 0.89 "
       "when calibrated)\n"
+      "warned of %d scans that did not move; of %d that did: %d registered, warned of %d\n"
       "a scan: mean %.2f s, 95 %% %.2f s, worst %.2f s; final: mean %.2f s, worst %.2f s\n",
       sums.tablets, sums.whole_tablets, 100.0 * sums.whole_tablets / std::max(1, sums.tablets), sums.scans,
       sums.registered, sums.unsure, sums.failed, sums.wrong, 1000 * std::sqrt(square),
-      1000 * quantile(sums.displacement_mm, 0.95), mean(sums.nees), quantile(sums.nees, 0.5),
-      mean(sums.add_s), quantile(sums.add_s, 0.95), quantile(sums.add_s, 1.0), mean(sums.final_s),
-      quantile(sums.final_s, 1.0));
+      1000 * quantile(sums.displacement_mm, 0.95), mean(sums.nees), quantile(sums.nees, 0.5), sums.warned,
+      sums.moved, sums.moved_registered, sums.moved_warned, mean(sums.add_s), quantile(sums.add_s, 0.95),
+      quantile(sums.add_s, 1.0), mean(sums.final_s), quantile(sums.final_s, 1.0));
   return sums.wrong == 0 ? 0 : 1;
 }

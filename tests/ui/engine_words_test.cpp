@@ -394,6 +394,13 @@ TEST(EngineWords, SentencesOfUnsureScansAreGerman) {
                  Language::kGerman),
       "er widerspricht der Stellung des Tisches; nachsehen, ob sich die Tafel zwischen den Scans bewegt "
       "hat");
+  EXPECT_EQ(
+      translated("the tablet or the scanner moved during the scan, after about 52 % of it, by 0.2 degrees "
+                 "and 0.15 mm; drop it and scan again",
+                 Language::kGerman),
+      "die Tafel oder der Scanner hat sich beim Scannen bewegt, nach etwa 52 % davon, um 0,2 Grad und 0,15 "
+      "mm; "
+      "ihn entfernen und neu scannen");
   EXPECT_EQ(translated("scan 4 is taken out", Language::kGerman), "Scan 4 ist entfernt");
   EXPECT_EQ(translated("the pins of scan 2 have no labels any more", Language::kGerman),
             "die Nadeln von Scan 2 haben keine Namen mehr");

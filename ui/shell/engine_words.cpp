@@ -87,6 +87,7 @@ constexpr EnginePhrase kPhrases[] = {
     {" too short along the laser line: the calibration is off",
      " zu kurz entlang der Laserlinie: die Kalibrierung stimmt nicht"},
     {"; or it is of another tablet", "; oder er ist von einer anderen Tafel"},
+    {" mm; drop it and scan again", " mm; ihn entfernen und neu scannen"},
     {"; verify the scanner, then scan it again", "; den Scanner prüfen, dann neu scannen"},
     {"the surfaces lie farther apart than noise explains; scan again with more overlap, or check that "
      "nothing "
