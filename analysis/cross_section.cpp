@@ -17,6 +17,16 @@ namespace {
 
 using Point = CrossSection::Point;
 
+/// A point, and where it is seen: across the view from the first place towards the second, and up to the
+/// viewer.
+struct SeenPoint : Point {
+  double across_mm = 0;
+  double up_mm = 0;
+};
+
+/// What stands less above a point does not hide it, mm: two copies of one surface.
+constexpr double kSame_mm = 1e-6;
+
 /// The cut as a graph: a point for each edge of the mesh that crosses the plane, a link for each face.
 class Cut {
  public:
@@ -24,11 +34,11 @@ class Cut {
       const Eigen::Vector3d& towards)
       : mesh_(mesh), from_(from), towards_(towards) {
     const Eigen::Vector3d line = to - from;
-    rise_ = line.dot(towards);
-    const Eigen::Vector3d across = line - rise_ * towards;
-    length_ = across.norm();
-    along_ = across / length_;
-    normal_ = along_.cross(towards);
+    along_ = line.normalized();
+    across_ = (line - line.dot(towards) * towards).normalized();
+    width_ = across_.dot(line);
+    normal_ = across_.cross(towards);
+    height_ = normal_.cross(along_);
   }
 
   void take_faces() {
@@ -53,6 +63,45 @@ class Cut {
     }
   }
 
+  /// Takes away what something else stands before: of a tablet on a plate the plate.
+  void hide_what_is_behind() {
+    std::vector<std::pair<std::size_t, std::size_t>> segments;
+    for (std::size_t a = 0; a < links_.size(); ++a) {
+      for (const std::size_t b : links_[a]) {
+        if (points_[a].across_mm < points_[b].across_mm) {
+          segments.emplace_back(a, b);
+        }
+      }
+    }
+    if (segments.empty()) {
+      return;
+    }
+    const auto [least, most] = std::ranges::minmax_element(points_, {}, &SeenPoint::across_mm);
+    const double start = least->across_mm;
+    const double step = std::max((most->across_mm - start) / static_cast<double>(segments.size()), kSame_mm);
+    const auto bin = [&](double across) { return static_cast<std::size_t>((across - start) / step); };
+    std::vector<std::vector<std::size_t>> over(bin(most->across_mm) + 1);
+    for (std::size_t k = 0; k < segments.size(); ++k) {
+      for (std::size_t at = bin(points_[segments[k].first].across_mm);
+           at <= bin(points_[segments[k].second].across_mm); ++at) {
+        over[at].push_back(k);
+      }
+    }
+    std::vector<bool> hidden(points_.size(), false);
+    for (std::size_t k = 0; k < points_.size(); ++k) {
+      const SeenPoint& p = points_[k];
+      hidden[k] = std::ranges::any_of(over[bin(p.across_mm)], [&](std::size_t s) {
+        const SeenPoint& a = points_[segments[s].first];
+        const SeenPoint& b = points_[segments[s].second];
+        const double part = (p.across_mm - a.across_mm) / (b.across_mm - a.across_mm);
+        return part >= 0 && part <= 1 && a.up_mm + part * (b.up_mm - a.up_mm) > p.up_mm + kSame_mm;
+      });
+    }
+    for (std::size_t k = 0; k < links_.size(); ++k) {
+      std::erase_if(links_[k], [&](std::size_t other) { return hidden[k] || hidden[other]; });
+    }
+  }
+
   [[nodiscard]] std::vector<std::vector<Point>> lines() {
     std::vector<std::vector<Point>> out;
     std::vector<bool> walked(points_.size(), false);
@@ -67,8 +116,6 @@ class Cut {
     std::ranges::sort(out, {}, [](const std::vector<Point>& line) { return line.front().along_mm; });
     return out;
   }
-
-  [[nodiscard]] double length() const { return length_; }
 
  private:
   [[nodiscard]] bool looks_up(const std::array<std::uint32_t, 3>& face) const {
@@ -85,8 +132,8 @@ class Cut {
       const Eigen::Vector3d p = mesh_.positions[low].cast<double>();
       const Eigen::Vector3d q = mesh_.positions[high].cast<double>();
       const Eigen::Vector3d place = p + part * (q - p);
-      const double along = along_.dot(place - from_);
-      points_.push_back({along, towards_.dot(place - from_) - rise_ * along / length_, place});
+      const Eigen::Vector3d off = place - from_;
+      points_.push_back({{along_.dot(off), height_.dot(off), place}, across_.dot(off), towards_.dot(off)});
       links_.emplace_back();
     }
     return at->second;
@@ -97,8 +144,8 @@ class Cut {
     links_[b].push_back(a);
   }
 
-  std::vector<Point> walk(std::size_t start, std::vector<bool>& walked) const {
-    std::vector<Point> line;
+  std::vector<SeenPoint> walk(std::size_t start, std::vector<bool>& walked) const {
+    std::vector<SeenPoint> line;
     std::optional<std::size_t> at = start;
     while (at) {
       walked[*at] = true;
@@ -109,18 +156,18 @@ class Cut {
       }
       at = next;
     }
-    if (line.front().along_mm > line.back().along_mm) {
+    if (line.front().across_mm > line.back().across_mm) {
       std::ranges::reverse(line);
     }
     return line;
   }
 
-  /// What of a line lies between the two places, ends interpolated.
-  void add_clipped(const std::vector<Point>& line, std::vector<std::vector<Point>>& out) const {
-    const auto inside = [&](const Point& p) { return p.along_mm >= 0 && p.along_mm <= length_; };
-    const auto between = [&](const Point& a, const Point& b, double edge) {
-      const double t = (edge - a.along_mm) / (b.along_mm - a.along_mm);
-      return Point{edge, a.height_mm + t * (b.height_mm - a.height_mm),
+  /// What of a line is seen between the two places, ends interpolated.
+  void add_clipped(const std::vector<SeenPoint>& line, std::vector<std::vector<Point>>& out) const {
+    const auto inside = [&](const SeenPoint& p) { return p.across_mm >= 0 && p.across_mm <= width_; };
+    const auto between = [&](const SeenPoint& a, const SeenPoint& b, double edge) {
+      const double t = (edge - a.across_mm) / (b.across_mm - a.across_mm);
+      return Point{a.along_mm + t * (b.along_mm - a.along_mm), a.height_mm + t * (b.height_mm - a.height_mm),
                    a.place_mm + t * (b.place_mm - a.place_mm)};
     };
     std::vector<Point> piece;
@@ -132,11 +179,11 @@ class Cut {
     };
     for (std::size_t k = 0; k < line.size(); ++k) {
       if (k > 0) {  // both ends may lie in one long face
-        const Point& before = line[k - 1];
-        const Point& after = line[k];
-        const bool onwards = before.along_mm < after.along_mm;
-        for (const double edge : {onwards ? 0 : length_, onwards ? length_ : 0}) {
-          if ((before.along_mm < edge) != (after.along_mm < edge)) {
+        const SeenPoint& before = line[k - 1];
+        const SeenPoint& after = line[k];
+        const bool onwards = before.across_mm < after.across_mm;
+        for (const double edge : {onwards ? 0 : width_, onwards ? width_ : 0}) {
+          if ((before.across_mm < edge) != (after.across_mm < edge)) {
             piece.push_back(between(before, after, edge));
           }
         }
@@ -151,11 +198,12 @@ class Cut {
   }
 
   const Mesh& mesh_;
-  Eigen::Vector3d from_, towards_, along_, normal_;
-  double rise_ = 0;
-  double length_ = 0;
+  Eigen::Vector3d from_, towards_;
+  Eigen::Vector3d along_, height_;   ///< of the line between the two places, and square to it in the plane
+  Eigen::Vector3d across_, normal_;  ///< across the view, and of the plane
+  double width_ = 0;                 ///< between the two places across the view
   std::unordered_map<std::uint64_t, std::size_t> node_of_;
-  std::vector<Point> points_;
+  std::vector<SeenPoint> points_;
   std::vector<std::vector<std::size_t>> links_;
 };
 
@@ -176,8 +224,10 @@ Result<CrossSection> cross_section(const Mesh& mesh, const Eigen::Vector3d& from
   }
   Cut cut(mesh, from_mm, to_mm, up);
   cut.take_faces();
+  cut.hide_what_is_behind();
   CrossSection out;
-  out.length_mm = cut.length();
+  out.length_mm = line.norm();
+  out.last_along_mm = out.length_mm;
   out.lines = cut.lines();
   bool first = true;
   for (const auto& piece : out.lines) {
@@ -187,6 +237,8 @@ Result<CrossSection> cross_section(const Mesh& mesh, const Eigen::Vector3d& from
         out.lowest_along_mm = point.along_mm;
       }
       out.highest_mm = first ? point.height_mm : std::max(out.highest_mm, point.height_mm);
+      out.first_along_mm = std::min(out.first_along_mm, point.along_mm);
+      out.last_along_mm = std::max(out.last_along_mm, point.along_mm);
       first = false;
     }
   }

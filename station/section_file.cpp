@@ -31,9 +31,9 @@ std::string section_csv(const CrossSection& section) {
 
 std::string section_svg(const CrossSection& section, const PictureWords& words) {
   const double top = std::max(0.0, section.highest_mm) + kMarginMm;
-  const double width = section.length_mm + 2 * kMarginMm;
+  const double width = section.last_along_mm - section.first_along_mm + 2 * kMarginMm;
   const double height = top - std::min(0.0, section.lowest_mm) + 2 * kMarginMm;
-  const auto x = [](double along) { return kMarginMm + along; };
+  const auto x = [&](double along) { return kMarginMm + along - section.first_along_mm; };
   const auto y = [&](double above) { return top - above; };
   std::string out = fmt::format(
       "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<svg xmlns=\"http://www.w3.org/2000/svg\" version=\"1.1\" "

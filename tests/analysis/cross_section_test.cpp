@@ -75,6 +75,57 @@ TEST(CrossSection, HeightsAreOverTheLineBetweenThePlaces) {
   EXPECT_NEAR(cut->lines[0].back().height_mm, 0, 1e-5);
 }
 
+/// Whichever way it is looked at: a section is true to scale, not its picture.
+TEST(CrossSection, IsTheSameFromEverySideThatItIsSeenFrom) {
+  const Mesh mesh = groove(0.1, false);
+  const Result<CrossSection> straight = cross_section(mesh, {-3, 0, 3}, {3, 0, 3}, {0, 0, 1});
+  ASSERT_TRUE(straight.has_value());
+  for (const double lean : {-0.9, -0.3, 0.5}) {
+    const Result<CrossSection> cut = cross_section(mesh, {-3, 0, 3}, {3, 0, 3}, {lean, 0, 1});
+    ASSERT_TRUE(cut.has_value());
+    EXPECT_NEAR(cut->length_mm, 6, 1e-9) << lean;
+    EXPECT_NEAR(cut->lowest_mm, -1, 1e-5) << lean;
+    EXPECT_NEAR(cut->lowest_along_mm, 3, 1e-5) << lean;
+    ASSERT_EQ(cut->lines.size(), 1U) << lean;
+    EXPECT_EQ(cut->lines[0].size(), straight->lines[0].size()) << lean;
+  }
+}
+
+TEST(CrossSection, OfPlacesAtDifferentHeightsIsTrueToScale) {
+  // From the field down to the bottom of the groove: the flank rises over that line by a known distance.
+  const Result<CrossSection> cut = cross_section(groove(0.1, false), {-3, 0, 3}, {0, 0, 2}, {0, 0, 1});
+  ASSERT_TRUE(cut.has_value());
+  EXPECT_NEAR(cut->length_mm, std::sqrt(10.0), 1e-9);
+  EXPECT_NEAR(cut->highest_mm, 2 / std::sqrt(10.0), 1e-5);  // the rim at (-1, 3)
+  for (const auto& line : cut->lines) {
+    for (const CrossSection::Point& p : line) {
+      EXPECT_NEAR(std::hypot(p.along_mm, p.height_mm), (p.place_mm - Eigen::Vector3d(-3, 0, 3)).norm(), 1e-6);
+    }
+  }
+}
+
+TEST(CrossSection, WhatLiesBehindIsNotCut) {
+  Mesh mesh = groove(0.1, false);
+  const Mesh plate = groove(0.25, false);  // another groove, under the middle of this one
+  const auto first = static_cast<std::uint32_t>(mesh.positions.size());
+  for (const Eigen::Vector3f& p : plate.positions) {
+    mesh.positions.push_back(1.6F * p - Eigen::Vector3f(0, 0, 8));
+  }
+  for (const auto& face : plate.faces) {
+    mesh.faces.push_back({first + face[0], first + face[1], first + face[2]});
+  }
+  const Result<CrossSection> cut = cross_section(mesh, {-3, 0.04, 3}, {3, 0.04, 3}, {0, 0, 1});
+  ASSERT_TRUE(cut.has_value());
+  EXPECT_EQ(cut->lines.size(), 1U);
+  EXPECT_NEAR(cut->lowest_mm, -1, 1e-5);
+  // Beside the upper one the lower one is seen.
+  const Result<CrossSection> wide = cross_section(mesh, {-7, 0.04, 3}, {7, 0.04, 3}, {0, 0, 1});
+  ASSERT_TRUE(wide.has_value());
+  ASSERT_EQ(wide->lines.size(), 3U);
+  EXPECT_NEAR(wide->lines[0].back().place_mm.x(), -5, 0.5);
+  EXPECT_NEAR(wide->lines[2].front().place_mm.x(), 5, 0.5);
+}
+
 TEST(CrossSection, AHolePartsIt) {
   Mesh mesh = groove(0.1, false);
   std::erase_if(mesh.faces, [&](const auto& face) {

@@ -102,11 +102,11 @@ void ViewerScreen::draw_section(UiContext& ui, ImVec2 origin, ImVec2 size) const
   const float head = ui.px(1) + words_high;
   const double room_y = static_cast<double>(high.y - low.y - head - ui.px(1.6F));
   const double relief_mm = std::max(top_mm - bottom_mm, 1e-3);
-  double px_per_mm = room_x / section.length_mm;
+  double px_per_mm = room_x / (section.last_along_mm - section.first_along_mm);
   const double times = exaggeration(room_y / (relief_mm * px_per_mm));
   px_per_mm = std::min(px_per_mm, room_y / (relief_mm * times));
   const auto at = [&](double along, double height) {
-    return ImVec2(low.x + ui.px(1.5F) + static_cast<float>(along * px_per_mm),
+    return ImVec2(low.x + ui.px(1.5F) + static_cast<float>((along - section.first_along_mm) * px_per_mm),
                   low.y + head + static_cast<float>((top_mm - height) * times * px_per_mm));
   };
   const ImU32 faint = packed(ui.colours.faint);
