@@ -95,25 +95,40 @@ double overlap_of(const ViewPredictor& view, const ModelSurface& surface) {
   return seen > 0 ? seen / (seen + unseen) : 0.0;
 }
 
+/// What a further look is worth: a view that was taken for nothing is not advised again, whether or not that
+/// is enough to excuse the place.
+double left_of(const RedTarget& target, const Eigen::Vector3d& towards_scanner) {
+  return novelty(target.tried, towards_scanner) * novelty(target.perhaps, towards_scanner);
+}
+
 }  // namespace
 
 void note_tries(std::span<const PlacedScan> scans, const Rig* rig, std::span<const double> noise_mm,
                 const ModelSurface& surface, std::vector<RedTarget>& targets) {
   std::vector<ViewPredictor> views;
+  std::vector<Eigen::AlignedBox3d> fields;  // that they certainly had, scanner frame
   views.reserve(scans.size());
   for (std::size_t s = 0; s < scans.size(); ++s) {
-    views.emplace_back(ScannerModel::that_took(*scans[s].grid, rig, noise_mm[s]), scans[s].model_from_scanner,
-                       surface.query, clearance_of(surface));
+    const RangeGrid& grid = *scans[s].grid;
+    views.emplace_back(
+        rig != nullptr ? ScannerModel::of(*rig, noise_mm[s]) : ScannerModel::of(grid, noise_mm[s]),
+        scans[s].model_from_scanner, surface.query, clearance_of(surface));
+    fields.push_back(ScannerModel::that_took(grid, rig, noise_mm[s]).field_mm);
   }
   parallel_for_each_index(
       targets.size(),
       [&](std::size_t i) {
-        targets[i].tried.clear();
-        for (const ViewPredictor& view : views) {
-          const double chance = view.facing_chance(targets[i].position_mm, targets[i].normal);
-          if (chance > kLeastLook && view.unobstructed(targets[i].position_mm, targets[i].normal)) {
-            targets[i].tried.push_back(
-                {view.towards_scanner(), view.towards_camera(targets[i].position_mm), chance});
+        RedTarget& target = targets[i];
+        target.tried.clear();
+        target.perhaps.clear();
+        for (std::size_t s = 0; s < views.size(); ++s) {
+          const ViewPredictor& view = views[s];
+          const double chance = view.facing_chance(target.position_mm, target.normal);
+          if (chance > kLeastLook && view.unobstructed(target.position_mm, target.normal)) {
+            const bool surely =
+                fields[s].contains(scans[s].model_from_scanner.inverse() * target.position_mm);
+            (surely ? target.tried : target.perhaps)
+                .push_back({view.towards_scanner(), view.towards_camera(target.position_mm), chance});
           }
         }
       },
@@ -131,7 +146,7 @@ std::vector<double> clearing_chances(const ViewCandidate& candidate, const Scann
         const RedTarget& t = targets[i];
         if (t.state == RegionState::kRed) {
           const double p = view.chance(t.position_mm, t.normal);
-          chances[i] = std::min(1.0, kSpill * p * novelty(t.tried, view.towards_scanner()));
+          chances[i] = std::min(1.0, kSpill * p * left_of(t, view.towards_scanner()));
         }
       },
       16);
@@ -182,7 +197,7 @@ Result<NextViews> next_views(std::span<const ViewCandidate> candidates, const Sc
           if (p > 0) {
             const double left = p * novelty(t.tried, views[c].towards_scanner());
             chance[c * red.size() + k] = {static_cast<float>(p), static_cast<float>(left)};
-            gain[c] += share * t.area_mm2 * left;
+            gain[c] += share * t.area_mm2 * p * left_of(t, views[c].towards_scanner());
           }
         }
       },

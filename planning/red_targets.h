@@ -32,6 +32,8 @@ struct RedTarget {
   bool given_up = false;        ///< no further view is planned for it
   bool rim = false;             ///< where the well-sampled surface ends, and no red sample marks it
   std::vector<VainLook> tried;  ///< scans that might have seen it and did not
+  std::vector<VainLook>
+      perhaps;  ///< likewise, if their fields reach as far as is supposed of those of new views
   RegionState state = RegionState::kRed;
   Excuse excuse = Excuse::kNone;
   std::string reason;

@@ -31,6 +31,14 @@ constexpr int kMostEmptySectorsOfRing = 4;
 constexpr float kFacesMiddleCosine = 0.5F;
 constexpr std::int64_t kMostCoarseCells = 16'000'000;
 
+/// Normals this far apart, 135°, and behind: of thin clay the other side, which says nothing of this one.
+/// Less is the far flank of a ridge, where the surface goes on.
+constexpr float kOtherSideCosine = -0.70710678F;
+bool is_other_side(const Eigen::Vector3f& normal, const SurfaceCover::Element& e,
+                   const Eigen::Vector3f& to_it) {
+  return normal.dot(e.normal) < kOtherSideCosine && normal.dot(to_it) < 0;
+}
+
 /// Twelfth of a turn that (a, b) lies in, without trigonometry.
 unsigned sector_of(float a, float b) {
   constexpr float kTan30 = 0.57735027F;
@@ -255,8 +263,8 @@ void SurfaceCover::find_rims(std::span<const PlacedScan> scans) {
         const Eigen::Vector3f u = here.normal.unitOrthogonal();
         const Eigen::Vector3f v = here.normal.cross(u);
         unsigned seen = 0;
-        for_each_near(here.position_mm, radius, [&](std::uint32_t, const Eigen::Vector3f& d, float d2) {
-          if (d2 < nearest2) {
+        for_each_near(here.position_mm, radius, [&](std::uint32_t j, const Eigen::Vector3f& d, float d2) {
+          if (d2 < nearest2 || is_other_side(here.normal, elements_[j], d)) {
             return false;
           }
           const float a = u.dot(d);
@@ -292,6 +300,9 @@ void SurfaceCover::settle_small_rims(const std::vector<Eigen::Vector3f>& outward
     int in_ring = 0;
     bool bare = true;
     for_each_near(middle, kRingInCells * cell, [&](std::uint32_t j, const Eigen::Vector3f& d, float d2) {
+      if (is_other_side(here.normal, elements_[j], elements_[j].position_mm - here.position_mm)) {
+        return false;
+      }
       const float a = u.dot(d);
       const float b = v.dot(d);
       // Above and below it as well: a wall that falls off steeply goes on there.

@@ -19,7 +19,8 @@ namespace dubsar {
 /// Flags alone cannot tell: where two scans see a hole up to the same rim, the border of each lies on good
 /// samples of the other, and both are cleared. An element is a rim when the elements around it, within
 /// reach_mm(), leave 120° or more empty; or 90°, as beside a round hole of 4 to 6 µ, when it is one of a ring
-/// of such elements that face the same bare disc.
+/// of such elements that face the same bare disc. Of thin clay the other side, behind and looking away by
+/// more than 135°, counts for nothing there.
 ///
 /// Each place is judged by the coarsest spacing of the scans that sampled it, with a good sample within about
 /// 1.5 of their µ: a coarse scan lets gaps pass where it looked, and nowhere else.
@@ -66,7 +67,7 @@ class SurfaceCover {
   [[nodiscard]] const std::vector<Element>& elements() const { return elements_; }
   /// Elements within radius_mm, in a fixed order.
   [[nodiscard]] std::vector<Element> within(const Eigen::Vector3d& p_mm, double radius_mm) const;
-  /// By the elements within radius_mm.
+  /// By the elements within radius_mm, of thin clay those of the other side, too.
   [[nodiscard]] Place at(const Eigen::Vector3d& p_mm, double radius_mm) const;
 
  private:

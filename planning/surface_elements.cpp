@@ -26,7 +26,8 @@ Eigen::Vector3f normal_at(const RangeGrid& grid, int row, int col, int step, flo
   };
   const Eigen::Vector3f along = there(row, col + step) - there(row, col - step);
   const Eigen::Vector3f across = there(row + step, col) - there(row - step, col);
-  const Eigen::Vector3f towards = grid.view.to_camera(here.cast<double>(), row).cast<float>();
+  // Not to the camera: where it stands may be told wrongly, and then steep surface would look inwards.
+  const Eigen::Vector3f towards = -grid.view.direction.cast<float>();
   const Eigen::Vector3f n = along.cross(across);
   const float length = n.norm();
   return length > 1e-12F ? Eigen::Vector3f(n * ((n.dot(towards) < 0 ? -1.0F : 1.0F) / length)) : towards;

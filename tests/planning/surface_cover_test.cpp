@@ -12,6 +12,7 @@
 #include <span>
 #include <vector>
 
+#include "core/units.h"
 #include "planning/cleared_map.h"
 #include "planning/red_map.h"
 #include "planning/rim_targets.h"
@@ -80,6 +81,21 @@ TEST(SurfaceCover, AHoleHasARimAndAnArea) {
   EXPECT_EQ(cover.at({3, 3, 0}, cover.reach_mm()), SurfaceCover::Place::kClosed);
   EXPECT_EQ(cover.at({1.15, 0, 0}, cover.reach_mm()), SurfaceCover::Place::kRim);
   EXPECT_EQ(cover.at({0, 0, 0}, 0.5), SurfaceCover::Place::kBare);
+}
+
+/// Or a tablet with a hollow is conclusive though nobody saw its thin floor from below.
+TEST(SurfaceCover, TheOtherSideOfThinClayClosesNoHole) {
+  const Plate above([](double x, double y) { return outside_disc(x, y, 1.0); }, 0);
+  const Plate below([](double, double) { return true; }, 0.03);
+  for (const double thick_mm : {0.15, 0.2, 0.3}) {
+    PlacedScan turned = below.placed(1);
+    turned.model_from_scanner = RigidTransform::from_twist({kPi, 0, 0}, {0, 0, -thick_mm});
+    const std::vector scans{above.placed(0), turned};
+    const SurfaceCover cover(scans);
+    const auto holes = inner_holes(cover);
+    ASSERT_EQ(holes.size(), 1U) << thick_mm;
+    EXPECT_NEAR(holes[0].width_mm, 2.4, 0.5) << thick_mm;
+  }
 }
 
 TEST(SurfaceCover, AGapThatTheRuleLetsPassIsNoHole) {
