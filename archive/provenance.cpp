@@ -51,7 +51,7 @@ OrderedJson time_span(const std::string& when) {
 /// Of a scan that was over when it was stored: nobody says when it began.
 OrderedJson time_span_until(const std::string& when) {
   return {{"@type", "crm:E52_Time-Span"},
-          {"rdfs:label", "stored at this time; its device told none"},
+          {"rdfs:label", "stored at this time; its device told none, or none that can be"},
           {"crm:P82b_end_of_the_end", {{"@type", "xsd:dateTime"}, {"@value", when}}}};
 }
 

@@ -95,7 +95,8 @@ std::string scans_section(const ReportInput& input) {
   for (const ScanPose& scan : input.scans) {
     const RedScan* counts = find_counts(input.red_map, scan.id);
     const std::optional<int> first = copied_from(input.red_map.copies, scan.id);
-    const bool placed = scan.status != PoseStatus::kFailed;
+    // What an unsure one has is of a place that was not taken.
+    const bool placed = scan.status == PoseStatus::kRegistered;
     const std::string dash = "–";
     rows += table_row(
         {std::to_string(scan.id), file_cell(input, scan.id, scan.file),

@@ -88,7 +88,10 @@ std::string profile_table(const std::vector<WedgeProfile>& profiles) {
   std::string aside =
       "Median, in brackets the tenth and the nine-tenths of the wedges: of fewer than five none are told. "
       "Slope and openings are read at wedges of which 0.8 or more is left (intact) and that are not worn "
-      "(roundness at most 0.02). Every wedge by itself, with what it is uncertain by, stands in the file.";
+      "(roundness at most 0.02). Every wedge by itself, with what it is uncertain by, stands in the file. "
+      "Sides are named by the direction of the wedges here, elsewhere on this page by the tablet's shape and "
+      "how "
+      "it was laid down: where these differ, one side has two names.";
   if (beyond_mesh > 0) {
     aside += " The mesh ends before " +
              counted(beyond_mesh, "edge does: its length is", "edges do: their lengths are") + " in no row.";

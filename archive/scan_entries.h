@@ -12,7 +12,8 @@ struct ScanEntry {
   int id = 0;
   std::string file{};      ///< its original name, or empty
   std::string when{};      ///< "2026-01-02T03:04:05Z"; empty where nothing tells
-  bool by_device = false;  ///< `when` is its first profile, as its device says; else when it was stored
+  bool by_device = false;  ///< `when` is its first profile, as its device says; else when it was stored: it
+                           ///< told none, or one that cannot be
   bool taken_out = false;
   std::string why{};  ///< it was taken out, or empty
 };

@@ -2,6 +2,9 @@
 // Copyright The Dubsar developers
 #include "station/package.h"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include <algorithm>
 #include <initializer_list>
 #include <optional>
@@ -13,6 +16,7 @@
 #include "analysis/wedge_features.h"
 #include "archive/staged_folder.h"
 #include "core/log.h"
+#include "core/utf8.h"
 #include "formats/bag_check.h"
 #include "station/done_stamp.h"
 #include "station/earlier_package.h"
@@ -50,6 +54,17 @@ struct FoundWedges {
   std::optional<WedgeFile> file;
   bool kept = false;  ///< in the session
 };
+
+/// " (its files say: A; B)", the devices that the scans name; empty where they name none.
+std::string said_by_files(const SessionStore& store) {
+  const auto scans = store.scans();
+  std::set<std::string> devices;
+  for (const StoredScan& scan : scans ? *scans : std::vector<StoredScan>()) {
+    devices.insert(one_line(scan.device));
+  }
+  devices.erase(std::string());
+  return devices.empty() ? std::string() : fmt::format(" (its files say: {})", fmt::join(devices, "; "));
+}
 
 /// The session's own wedges, or, where it has none of this surface, measured now: then under the ids that an
 /// earlier package in its place, or the session, has told.
@@ -92,9 +107,11 @@ std::string kinds_of_things(const PackageContent& content) {
 }
 
 std::vector<BagField> bag_fields(const PackageContent& content) {
-  std::string description = content.simulated.empty()
-                                ? "Surface of a cuneiform tablet, measured by laser triangulation: "
-                                : "SIMULATED. " + content.simulated + " Here are ";
+  std::string description =
+      content.simulated.empty()
+          ? std::string("Surface of a cuneiform tablet, ") +
+                (content.comes_from_files() ? "from files of scans: " : "measured by laser triangulation: ")
+          : "SIMULATED. " + content.simulated + " Here are ";
   description += kinds_of_things(content) + ". ";
   description += content.results().red_map.conclusive
                      ? "The verdict is conclusive: what the scanner can reach is sampled densely enough."
@@ -221,6 +238,9 @@ Result<Package> write_package(const fs::path& session, const fs::path& to, const
   const Mesh& mesh = source->results().mesh;
   opening.done("reading");
   PageFacts facts = page_facts_of(store);
+  if (facts.device.starts_with("replay:")) {
+    facts.device += said_by_files(store);
+  }
   const Result<std::string> simulated = simulated_words(store);
   if (!simulated) {
     return std::unexpected(simulated.error());
@@ -256,6 +276,11 @@ Result<Package> write_package(const fs::path& session, const fs::path& to, const
                          .left_out = {},
                          .job = job};
   const bool is_named_by_session = tablet.cdli.empty() && tablet.museum_number.empty();
+  if (const std::string& behind = source->behind(); !behind.empty()) {
+    log_warning(session.string() + ": " + behind + "; run dubsar register and plan on it, then export again");
+    content.lacking.push_back("Take care: " + behind +
+                              ". Poses and what is told of them are of before that.");
+  }
   content.options.base_url = base_url(options.base_url, address_name(identifier, is_named_by_session));
   if (content.has(PackagePart::kWedges)) {
     Result<FoundWedges> wedges = wedges_of(store, mesh, options.replace ? to : fs::path(), job);

@@ -63,6 +63,8 @@ struct PackageContent {
   std::vector<std::string> left_out;  ///< what lies in the session's folder and was not wanted, likewise
   JobContext& job;
 
+  /// Files of who knows what scanner, not a scanner.
+  [[nodiscard]] bool comes_from_files() const { return facts.device.starts_with("replay:"); }
   [[nodiscard]] bool has(PackagePart part) const { return !options.without.contains(part); }
   [[nodiscard]] const Results& results() const { return source.results(); }
   [[nodiscard]] const Mesh& mesh() const { return source.results().mesh; }

@@ -116,6 +116,7 @@ void add_steps(const PackageContent& content, const std::vector<std::string>& pa
       registration.from.push_back(scan.file);
     }
   }
+  registration.note = content.source.behind();
   registration.results = {{"worst RMS between overlapping scans", worst_rms_mm, "mm"},
                           {"worst predicted error of a place", worst_sigma_mm, "mm"}};
   ProvenanceStep verdict{"verdict",

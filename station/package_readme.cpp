@@ -10,6 +10,7 @@
 
 #include "core/scan_list.h"
 #include "station/package_content.h"
+#include "station/wedge_doubts.h"
 
 namespace dubsar {
 
@@ -71,8 +72,8 @@ std::string sides_sentence(const PackageContent& content) {
     return to_string(v[axis] > 0 ? kPlus[axis] : kMinus[axis]);
   };
   return fmt::format(
-      "Take care: pictures and wedges name the sides by the direction of the wedges, verdict and report by "
-      "the "
+      "Take care: pictures, wedges and the report's table of wedges name the sides by the direction of the "
+      "wedges, verdict and the rest of the report by the "
       "tablet's shape and how it was laid down, and here they differ. What pictures and wedges call the "
       "obverse, "
       "the report calls the {}; their top edge is the report's {}, their right edge its {}.",
@@ -137,15 +138,16 @@ Status add_readme(PackageContent& content) {
       .append("\n")
       .append(std::string(content.identifier.size(), '='))
       .append("\n\n");
-  text +=
-      folded(fmt::format("{} packed by {} on {}. "
-                         "This folder is the payload of a bag (BagIt 1.0, RFC 8493): manifest-sha512.txt "
-                         "beside it holds the checksum of every file here, so that anybody can tell whether "
-                         "they are still what they were: sha512sum -c manifest-sha512.txt.",
-                         content.simulated.empty() ? "A cuneiform tablet, measured by laser triangulation and"
-                                                   : "SIMULATED. " + content.simulated + " This was",
-                         program_name(), content.when),
-             0);
+  text += folded(
+      fmt::format("{} packed by {} on {}. "
+                  "This folder is the payload of a bag (BagIt 1.0, RFC 8493): manifest-sha512.txt "
+                  "beside it holds the checksum of every file here, so that anybody can tell whether "
+                  "they are still what they were: sha512sum -c manifest-sha512.txt.",
+                  !content.simulated.empty()   ? "SIMULATED. " + content.simulated + " This was"
+                  : content.comes_from_files() ? "A cuneiform tablet, from files of scans,"
+                                               : "A cuneiform tablet, measured by laser triangulation and",
+                  program_name(), content.when),
+      0);
   text += "\n";
   text +=
       folded(conclusive ? "The verdict is CONCLUSIVE: every part of the tablet that the scanner can reach "
@@ -155,6 +157,11 @@ Status add_readme(PackageContent& content) {
   text += folded("Signature: " + signature_words(content) + ".", 0);
   if (const std::string out = taken_out_in_words(content.facts.scans); !out.empty()) {
     text += folded("Taken out by the operator, and in neither model nor verdict: " + out + ".", 0);
+  }
+  if (content.wedges) {
+    for (const Error& doubt : doubts_of(*content.wedges, {})) {
+      text += folded("Take care with the wedges: " + doubt.what + ".", 0);
+    }
   }
   if (const auto& unplaced = content.results().checklist.scans_unplaced; !unplaced.empty()) {
     text += folded("Without a place so far, and in neither model nor verdict: " + listed(unplaced) + ".", 0);
@@ -194,6 +201,15 @@ Status add_readme(PackageContent& content) {
     text += pictures + "\n";
   }
   text += folded(sides_sentence(content), 2);
+  if (!conclusive && !content.pictures.empty()) {
+    text += folded(
+        "How the tablet lies is worked out from what was scanned of it. The verdict is not conclusive: where "
+        "whole sides are missing it may lie askew by some ten degrees or more in pictures and drawings, "
+        "lengths in them are then too short, and its extent is not that of the tablet. What is measured on "
+        "the "
+        "model itself does not go by that.",
+        2);
+  }
   std::vector<std::string> lacking = content.lacking;
   std::ranges::copy(content.left_out, std::back_inserter(lacking));
   for (const PackagePart part : content.options.without) {

@@ -177,6 +177,28 @@ Result<std::string> events_text(const SessionStore& store) {
   return text_of(list);
 }
 
+/// That there are scans whose place is not certain.
+void tell_of_unsure(PackageContent& content) {
+  std::vector<int> unsure;
+  for (const ScanPose& pose : content.results().poses) {
+    if (pose.status != PoseStatus::kRegistered) {
+      unsure.push_back(pose.id);
+    }
+  }
+  if (unsure.empty()) {
+    return;
+  }
+  const std::string which = listed(unsure);
+  content.lacking.push_back(fmt::format(
+      "No certain place was found for {}: here as measured, with the reason in scans/poses.json, and "
+      "in neither model nor verdict.",
+      which));
+  log_warning(
+      fmt::format("{}: no certain place was found for {}, so that neither model nor verdict has what "
+                  "was seen there; dubsar session list tells why",
+                  content.store.folder().string(), which));
+}
+
 /// That there are scans which the model and the verdict know nothing of.
 void tell_of_unplaced(PackageContent& content) {
   const std::vector<int>& unplaced = content.results().checklist.scans_unplaced;
@@ -242,6 +264,7 @@ Status add_scans(PackageContent& content) {
     return std::unexpected(poses.error());
   }
   tell_of_unplaced(content);
+  tell_of_unsure(content);
   const std::map<int, std::string> stored = stored_times(content.store);
   OrderedJson list = OrderedJson::array();
   for (std::size_t i = 0; i < scans->size(); ++i) {

@@ -15,6 +15,7 @@
 #include "formats/checklist_json.h"
 #include "formats/poses_json.h"
 #include "formats/red_map_json.h"
+#include "station/followed_word.h"
 #include "station/lost_scans.h"
 #include "station/same_places.h"
 #include "station/unplaced_scans.h"
@@ -209,6 +210,11 @@ Result<PackageSource> PackageSource::open(const fs::path& session, JobContext& j
         "no scan of the session stands and can be read: there is no model to be had, nor what is made of "
         "one; all else is packed");
   }
+  Result<std::string> behind = not_followed_sentence(*source.set_);
+  if (!behind) {
+    return std::unexpected(behind.error());
+  }
+  source.behind_ = std::move(*behind);
   Result<PlannedAgain> planned = plan_again(*source.set_, source.set_->poses, job);
   if (!planned) {
     return std::unexpected(planned.error());

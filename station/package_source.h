@@ -45,6 +45,8 @@ class PackageSource {
   /// Why that is so: "export/report.html is not as it was stored (missing)". Empty where there are pages, and
   /// where the session keeps none.
   [[nodiscard]] const std::string& why_anew() const { return why_anew_; }
+  /// What the poses do not follow yet, as not_followed_sentence() has it; empty where they follow.
+  [[nodiscard]] const std::string& behind() const { return behind_; }
   /// What the files of the session were when it was opened.
   [[nodiscard]] const VerifyReport& found() const { return found_; }
   /// Only where pages() is nothing.
@@ -61,6 +63,7 @@ class PackageSource {
   VerifyReport found_;
   std::optional<KeptPages> pages_;
   std::string why_anew_;
+  std::string behind_;
   std::optional<ScanSet> set_;
   std::optional<PlannedAgain> planned_;
   RigidTransform tablet_from_model_;

@@ -15,9 +15,18 @@ namespace {
 
 constexpr const char* kScanStored = "scan stored";
 
+constexpr std::int64_t kNanosecondsPerSecond = 1'000'000'000;
+
 std::string utc_of(std::int64_t time_ns) {
-  constexpr std::int64_t kNanosecondsPerSecond = 1'000'000'000;
   return utc_text(static_cast<std::time_t>(time_ns / kNanosecondsPerSecond));
+}
+
+/// Whether a device can have told this time of a scan that was stored then: no clock that counts from its own
+/// start, and none that is ahead, but for the hours by which clocks of different places differ.
+bool is_likely(std::int64_t time_ns, const std::string& stored) {
+  constexpr std::int64_t kDay_ns = 86400 * kNanosecondsPerSecond;
+  constexpr std::int64_t kFirstScanners_ns = 3652 * kDay_ns;  // 1980
+  return time_ns >= kFirstScanners_ns && (stored.empty() || utc_of(time_ns - kDay_ns) <= stored);
 }
 
 }  // namespace
@@ -47,12 +56,10 @@ std::vector<ScanEntry> scan_entries_of(const SessionStore& store) {
     entry.file = scan.source;
     entry.taken_out = scan.dropped;
     entry.why = scan.dropped ? scan.note : std::string();
-    entry.by_device = scan.timestamp_ns > 0;
-    if (entry.by_device) {
-      entry.when = utc_of(scan.timestamp_ns);
-    } else if (const auto at = stored.find(scan.id); at != stored.end()) {
-      entry.when = at->second;
-    }
+    const auto at = stored.find(scan.id);
+    const std::string kept = at == stored.end() ? std::string() : at->second;
+    entry.by_device = is_likely(scan.timestamp_ns, kept);
+    entry.when = entry.by_device ? utc_of(scan.timestamp_ns) : kept;
   }
   return entries;
 }

@@ -194,21 +194,24 @@ std::optional<WedgeFile> stored_wedges(const SessionStore& store, const Mesh& me
 }
 
 SessionWedges counts_of(const WedgeFile& file, fs::path json) {
-  return {std::move(json), file.wedges.size(), file.rejected.size(), file.text_certainty,
-          make_read_profiles(file.wedges)};
+  SessionWedges out{
+      std::move(json), file.wedges.size(), file.rejected.size(), {}, make_read_profiles(file.wedges)};
+  for (Error& doubt : doubts_of(file, {})) {
+    out.doubts.push_back(std::move(doubt.what));
+  }
+  return out;
 }
 
 std::string wedge_sentence(const SessionWedges& wedges, const std::string& where) {
-  if (wedges.count == 0) {
-    return fmt::format("No wedges were found; {} hollows were looked at.", wedges.rejected);
-  }
-  std::string sentence = fmt::format(
-      "{} wedges were measured, {} hollows were rejected: {} has every angle, the drawings "
-      "beside it every wedge. Wedge measurement was tested on simulated tablets only.",
-      wedges.count, wedges.rejected, where);
-  if (std::optional<std::string> said = no_text(wedges.count, wedges.text_certainty)) {
-    said->front() = 'N';
-    sentence += fmt::format(" {}.", *said);
+  std::string sentence =
+      wedges.count == 0
+          ? fmt::format("No wedges were found; {} hollows were looked at.", wedges.rejected)
+          : fmt::format(
+                "{} wedges were measured, {} hollows were rejected: {} has every angle, the drawings "
+                "beside it every wedge. Wedge measurement was tested on simulated tablets only.",
+                wedges.count, wedges.rejected, where);
+  for (const std::string& doubt : wedges.doubts) {
+    sentence += " Take care: " + doubt + ".";
   }
   return sentence;
 }

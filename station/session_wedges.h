@@ -22,7 +22,7 @@ struct SessionWedges {
   std::filesystem::path json;  ///< analysis/wedges.json; a drawing of each written side lies beside it
   std::size_t count = 0;
   std::size_t rejected = 0;
-  double text_certainty = 0;
+  std::vector<std::string> doubts;     ///< doubts_of(), sentences without their mends
   std::vector<WedgeProfile> profiles;  ///< make_read_profiles()
 };
 

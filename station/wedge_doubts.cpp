@@ -26,6 +26,19 @@ bool has_several_bodies(const WedgeFile& file, std::size_t bodies) {
          std::ranges::any_of(file.wedges, [](const Wedge& wedge) { return wedge.place.body > 0; });
 }
 
+/// What there is to say where wedges were found and no text runs through them.
+std::optional<std::string> no_text(std::size_t wedges, double text_certainty) {
+  if (wedges == 0 || text_certainty >= kCertainText) {
+    return std::nullopt;
+  }
+  const std::string of_them =
+      wedges == 1 ? std::string("no direction of writing shows in the one wedge that was found")
+                  : fmt::format("no direction of writing shows in the {} wedges that were found", wedges);
+  return of_them +
+         ": confidence was learnt on inscribed tablets, and hollows of rough clay may pass for wedges: look "
+         "at them before you count them";
+}
+
 }  // namespace
 
 std::vector<Error> doubts_of(const WedgeFile& file, const std::string& where, std::size_t bodies) {
@@ -49,18 +62,6 @@ std::vector<Error> doubts_of(const WedgeFile& file, const std::string& where, st
   return doubts;
 }
 
-std::optional<std::string> no_text(std::size_t wedges, double text_certainty) {
-  if (wedges == 0 || text_certainty >= kCertainText) {
-    return std::nullopt;
-  }
-  const std::string of_them =
-      wedges == 1 ? std::string("no direction of writing shows in the one wedge that was found")
-                  : fmt::format("no direction of writing shows in the {} wedges that were found", wedges);
-  return of_them +
-         ": confidence was learnt on inscribed tablets, and hollows of rough clay may pass for wedges: look "
-         "at them before you count them";
-}
-
 std::optional<Error> too_coarse(const WedgeFile& file, const std::string& where) {
   std::vector<double> depths;
   for (const Wedge& wedge : file.wedges) {
@@ -73,7 +74,7 @@ std::optional<Error> too_coarse(const WedgeFile& file, const std::string& where)
   }
   return Error{ErrorKind::kBadInput,
                fmt::format("too coarse for wedges of the usual size, many or all of them are missed: "
-                           "its spacing is {:.2f} mm",
+                           "the mesh's spacing is {:.2f} mm",
                            file.spacing_mm),
                where, "scan it, or export it, at 0.1 mm or finer"};
 }

@@ -20,9 +20,6 @@ namespace dubsar {
 [[nodiscard]] std::vector<Error> doubts_of(const WedgeFile& file, const std::string& where,
                                            std::size_t bodies = 0);
 
-/// What there is to say where wedges were found and no text runs through them.
-[[nodiscard]] std::optional<std::string> no_text(std::size_t wedges, double text_certainty);
-
 /// What there is to say where the mesh is too coarse for wedges of the usual size, and those that were found,
 /// if any, are not larger ones. Nothing where the file does not say its spacing.
 [[nodiscard]] std::optional<Error> too_coarse(const WedgeFile& file, const std::string& where);

@@ -91,5 +91,34 @@ TEST_F(ExportOfUnplaced, PagesThatKnowNothingOfAScanAreNotTakenForItsVerdict) {
               Not(HasSubstr("place was worked out yet")));
 }
 
+TEST_F(ExportOfUnplaced, AScanOfNoCertainPlaceIsTold) {
+  {
+    SessionStore store = SessionStore::open(session_).value();
+    std::vector<ScanPose> poses = store.poses().value();
+    std::ranges::find(poses, 1, &ScanPose::id)->status = PoseStatus::kUnsure;
+    ASSERT_TRUE(store.save_poses(poses));
+  }
+  const Outcome done = pack();
+  ASSERT_EQ(done.status, 0) << done.err;
+  EXPECT_THAT(done.json()["lacking"].dump(), HasSubstr("No certain place was found for scan 1:"));
+  EXPECT_THAT(done.err, HasSubstr("no certain place was found for scan 1,"));
+  EXPECT_THAT(readme(), HasSubstr("No certain place was found for scan 1:"));
+}
+
+TEST_F(ExportOfUnplaced, PosesThatDoNotFollowWhatWasSaidAreTold) {
+  ASSERT_EQ(run_command({"session", "drop", session_.string(), "1"}).status, 0);
+  const Outcome done = pack();
+  ASSERT_EQ(done.status, 0) << done.err;
+  const std::string behind = "the poses do not follow yet what was said: scan 1 has been taken out";
+  EXPECT_THAT(done.err, HasSubstr(behind + "; run dubsar register"));
+  EXPECT_THAT(done.json()["lacking"].dump(), HasSubstr("Take care: " + behind));
+  EXPECT_THAT(packed("provenance.jsonld"), HasSubstr(behind));
+  ASSERT_LE(run_command({"register", session_.string()}).status, 1);
+  const Outcome followed = pack({"--update"});
+  ASSERT_EQ(followed.status, 0) << followed.err;
+  EXPECT_THAT(followed.json()["lacking"].dump() + followed.err + packed("provenance.jsonld"),
+              Not(HasSubstr("do not follow")));
+}
+
 }  // namespace
 }  // namespace dubsar

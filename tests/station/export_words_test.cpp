@@ -8,6 +8,7 @@
 
 #include <filesystem>
 #include <fstream>
+#include <regex>
 #include <set>
 #include <string>
 
@@ -61,8 +62,37 @@ TEST_F(Export, NamesNoFolderOfTheComputerThatItWasMadeOn) {
   EXPECT_THAT(bytes_of(data("README.txt")), HasSubstr("  Scanned with: replay:scans\n"));
 }
 
+TEST_F(Export, SaysWhatTheWedgesAreWorthAndThatAnUnfinishedTabletMayLieAskew) {
+  const std::string coarse =
+      "Take care: too coarse for wedges of the usual size, many or all of them are missed";
+  EXPECT_THAT(bytes_of(data("report/report.html")), HasSubstr(coarse));
+  const std::string readme = std::regex_replace(bytes_of(data("README.txt")), std::regex("\\s+"), " ");
+  EXPECT_THAT(readme, HasSubstr("Take care with the wedges: too coarse for wedges of the usual size"));
+  EXPECT_THAT(readme, HasSubstr("The verdict is NOT CONCLUSIVE"));
+  EXPECT_THAT(readme, HasSubstr("it may lie askew by some ten degrees or more in pictures and drawings"));
+}
+
+TEST_F(Export, ANumberThatIsGivenAfterTheSignatureIsToldBesideIt) {
+  const fs::path session = at("renumbered");
+  fs::copy(at("session"), session, fs::copy_options::recursive);
+  ASSERT_EQ(run_command({"session", "describe", session.string(), "--museum-number", "BM 1"}).status, 0);
+  ASSERT_EQ(
+      run_command({"session", "sign", session.string(), "--name", "A. Reader", "--incomplete", "a test"})
+          .status,
+      0);
+  const std::string told = "what tablet it is was said or changed after that";
+  ASSERT_EQ(pack_described(session, at("renumbered_as_it_was"), {"--museum-number", "BM 1"}).status, 0);
+  EXPECT_THAT(bytes_of(at("renumbered_as_it_was") / "bag-info.txt"),
+              AllOf(HasSubstr("signed by A. Reader"), Not(HasSubstr(told))));
+  ASSERT_EQ(pack_described(session, at("renumbered_bag"), {"--museum-number", "VAT 99"}).status, 0);
+  const std::string tags =
+      std::regex_replace(bytes_of(at("renumbered_bag") / "bag-info.txt"), std::regex("\\s+"), " ");
+  EXPECT_THAT(tags, AllOf(HasSubstr("signed by A. Reader"), HasSubstr(told)));
+}
+
 TEST_F(Export, ASimulatedTabletIsNotPassedOffAsClay) {
-  EXPECT_THAT(bytes_of(data("README.txt")), HasSubstr("A cuneiform tablet, measured by laser"));
+  EXPECT_THAT(bytes_of(data("README.txt")), HasSubstr("A cuneiform tablet, from files of scans, packed by"))
+      << "by whatever scanner";
   const fs::path session = at("made_up");
   ASSERT_NE(run_command({"scan", "--device", "sim:?seed=2&size=14x11x8&spacing=0.5", "--session",
                          session.string(), "--max-scans", "1"})

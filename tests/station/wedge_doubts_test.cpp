@@ -71,7 +71,7 @@ TEST(WedgeDoubts, ACoarseMeshIsToldUnlessItsWedgesAreLarge) {
   file.spacing_mm = 0.2;
   EXPECT_THAT(lines(file),
               ElementsAre("t.ply: too coarse for wedges of the usual size, many or all of them are missed: "
-                          "its spacing is 0.20 mm; scan it, or export it, at 0.1 mm or finer"));
+                          "the mesh's spacing is 0.20 mm; scan it, or export it, at 0.1 mm or finer"));
   for (Wedge& wedge : file.wedges) {
     wedge.depth_mm = 0.8;
   }
