@@ -46,7 +46,7 @@ TEST(Loader, LoadsADriverWrittenInC) {
   ASSERT_EQ(options->size(), 1U);
   EXPECT_EQ(options->front().key, "mode");
   EXPECT_EQ(options->front().type, SettingType::kChoice);
-  EXPECT_EQ(options->front().choices.size(), 15U);
+  EXPECT_EQ(options->front().choices.size(), 16U);
   EXPECT_FALSE(options->front().range);
   const auto found = driver.discover();
   ASSERT_TRUE(found);

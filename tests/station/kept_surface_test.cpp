@@ -99,7 +99,7 @@ TEST(KeptSurface, OfWedgesThatAreKeptPagesTellWhatTheyToldWhenTheyWereMeasured) 
   file.text_certainty = 0;
   keep(store, mesh, file);
   tell_kept_wedges(facts, store, mesh, {});
-  EXPECT_THAT(facts.wedges, HasSubstr("No direction of writing shows"));
+  EXPECT_THAT(facts.wedges, HasSubstr("Take care: no direction of writing shows"));
 
   // What was measured otherwise is none of the other mesh.
   nlohmann::json noted = nlohmann::json::parse(store.load_document("wedges").value().value());
