@@ -193,7 +193,7 @@ cmp -s "$folder/before.ply" "$folder"/fresh/data/model/*.ply || fail "the workfl
 # Its package follows: an earlier one goes when the new one is whole, one that somebody changed stays.
 cp -r "$folder/museum/s.results/package" "$folder/museum/s.results/package.done" "$folder/museum/t.results/"
 packed || fail "the package of a session that has changed: $(cat "$log")"
-[ "$(tail -n 1 "$log" | grep -c ' export end$')" = 1 ] || fail "the package of a session that has changed: $(cat "$log")"
+[ "$(tail -n 1 "$log" | grep -c ' export end lacking .*the poses do not follow yet what was said: scan 1 has been taken out')" = 1 ] || fail "the package of a session that has changed: $(cat "$log")"
 cmp -s "$folder/before.ply" "$folder"/museum/t.results/package/data/model/*.ply || fail "the package has another mesh"
 packed || fail "the package of a session that has changed, again"
 [ "$(tail -n 1 "$log" | grep -c ' export found-done$')" = 1 ] || fail "the new package was not found done: $(cat "$log")"
