@@ -2,6 +2,7 @@
 // Copyright The Dubsar developers
 #include "formats/byte_order.h"
 #include "formats/mesh_formats.h"
+#include "formats/ply_of_unknown_unit.h"
 
 namespace dubsar {
 
@@ -10,10 +11,10 @@ namespace {
 constexpr std::size_t kPiece = std::size_t{1} << 20U;
 
 /// What is not known of the vertices has no property: a number in its place would be taken for a measure.
-std::string header_of(const Mesh& mesh, const FileLabel& label) {
+std::string header_of(const Mesh& mesh, const FileLabel& label, bool unit_known) {
   std::string out = "ply\nformat binary_little_endian 1.0\n" + mesh_line(label, "comment ") +
-                    label_lines(label, "comment ") + "obj_info unit mm\nelement vertex " +
-                    std::to_string(mesh.positions.size()) + "\n";
+                    label_lines(label, "comment ") + (unit_known ? "obj_info unit mm\n" : "") +
+                    "element vertex " + std::to_string(mesh.positions.size()) + "\n";
   const auto property = [&](bool known, const char* type_and_name) {
     if (known) {
       out.append("property ").append(type_and_name).push_back('\n');
@@ -33,10 +34,8 @@ std::string header_of(const Mesh& mesh, const FileLabel& label) {
          "\nproperty list uchar int vertex_indices\nend_header\n";
 }
 
-}  // namespace
-
-Status produce_mesh_ply(const Mesh& mesh, const ByteSink& sink, const FileLabel& label) {
-  std::string out = header_of(mesh, label);
+Status produce_ply(const Mesh& mesh, const ByteSink& sink, const FileLabel& label, bool unit_known) {
+  std::string out = header_of(mesh, label, unit_known);
   const auto pass_on = [&](std::size_t least) -> Status {
     if (out.size() < least) {
       return {};
@@ -80,6 +79,18 @@ Status produce_mesh_ply(const Mesh& mesh, const ByteSink& sink, const FileLabel&
     }
   }
   return pass_on(1);
+}
+
+}  // namespace
+
+Status produce_mesh_ply(const Mesh& mesh, const ByteSink& sink, const FileLabel& label) {
+  return produce_ply(mesh, sink, label, true);
+}
+
+Status write_ply_of_unknown_unit(const std::filesystem::path& path, const Mesh& mesh,
+                                 const FileLabel& label) {
+  return write_file_atomically(path,
+                               [&](const ByteSink& sink) { return produce_ply(mesh, sink, label, false); });
 }
 
 std::string encode_mesh_ply(const Mesh& mesh, const FileLabel& label) {

@@ -2,27 +2,16 @@
 // Copyright The Dubsar developers
 #include "station/mesh_viewing.h"
 
-#include <fmt/format.h>
-#include <fmt/ranges.h>
-
-#include <Eigen/Geometry>
-#include <limits>
 #include <utility>
 
 #include "acquisition/session_store.h"
 #include "analysis/body_fields.h"
 #include "analysis/curvature.h"
-#include "analysis/tablet_size.h"
 #include "analysis/vertex_geometry.h"
 #include "core/tablet_frame.h"
 #include "core/thread_priority.h"
-#include "formats/atomic_file.h"
-#include "formats/file_label_reader.h"
-#include "formats/mesh_formats.h"
-#include "formats/mesh_io.h"
-#include "formats/ply_header.h"
 #include "station/analysis.h"
-#include "station/outward_faces.h"
+#include "station/mesh_to_view.h"
 #include "station/place_outside.h"
 #include "station/section_file.h"
 #include "station/selection_store.h"
@@ -31,55 +20,7 @@
 
 namespace dubsar {
 
-namespace {
-
 namespace fs = std::filesystem;
-
-/// Whether the file says what its numbers are: a GLB is in metres, a PLY of ours has it in its header.
-bool states_its_unit(const fs::path& file) {
-  constexpr std::size_t kHeadBytes = std::size_t{64} << 10U;
-  const Result<std::string> head = read_file_head(file, kHeadBytes);
-  return head && (is_glb(*head) || states_unit(*head, file.string()));
-}
-
-/// What somebody who measures on it has to know of its numbers.
-std::optional<Error> odd_numbers(const Mesh& mesh, const fs::path& file) {
-  const std::string where = file.filename().string();
-  Eigen::AlignedBox3f box;
-  for (const Eigen::Vector3f& p : mesh.positions) {
-    if (p.allFinite()) {
-      box.extend(p);
-    }
-  }
-  if (box.isEmpty()) {
-    return std::nullopt;
-  }
-  const double size_mm = static_cast<double>(box.diagonal().norm());
-  const double far_mm = static_cast<double>(box.min().cwiseAbs().cwiseMax(box.max().cwiseAbs()).maxCoeff());
-  const double step_mm = far_mm * static_cast<double>(std::numeric_limits<float>::epsilon());
-  constexpr double kCoarseStep = 2e-5;  // of the size: a micrometre on a tablet of 5 cm
-  constexpr double kSmallMm = 2;        // no tablet and no part of one, whatever the file says
-  if (step_mm > kCoarseStep * size_mm) {
-    return Error{
-        ErrorKind::kBadInput,
-        fmt::format("it lies {:.0f} mm from the origin of its numbers, where places are good to {:.2g} mm",
-                    far_mm, step_mm),
-        where, "export it again with its middle at the origin"};
-  }
-  std::vector<std::string_view> units = likelier_units(size_mm, 1.0);
-  if (units.empty() && size_mm > 0 && size_mm < kSmallMm) {
-    units = {"m"};
-  }
-  if (!units.empty() && (size_mm < kSmallMm || !states_its_unit(file))) {
-    return Error{
-        ErrorKind::kBadInput,
-        fmt::format("it is {:.3g} mm large, perhaps its numbers are {}", size_mm, fmt::join(units, ", ")),
-        where, fmt::format("dubsar mesh convert --unit {} makes millimetres of them", units.front())};
-  }
-  return std::nullopt;
-}
-
-}  // namespace
 
 MeshViewing::MeshViewing(std::function<void()> on_change) : on_change_(std::move(on_change)) {
   state_.selections = std::make_shared<const std::vector<MeshSelection>>();
@@ -113,10 +54,10 @@ void MeshViewing::ask(Task task, AskedBy by) {
     if (ended_) {
       return;
     }
-    if (by == AskedBy::kPerson) {
-      state_.error = odd_;  // what was refused before is no matter any more
+    if (by != AskedBy::kWindow) {
+      state_.error.reset();  // what was refused before is no matter any more
     }
-    tasks_.push_back(std::move(task));
+    tasks_.push_back({std::move(task), by == AskedBy::kPersonForGood});
     if (running_) {
       return;
     }
@@ -134,7 +75,7 @@ void MeshViewing::ask(Task task, AskedBy by) {
 void MeshViewing::run() {
   yield_this_thread();
   for (;;) {
-    Task task;
+    Waiting next;
     {
       const std::scoped_lock lock(mutex_);
       if (tasks_.empty()) {
@@ -142,7 +83,7 @@ void MeshViewing::run() {
         state_.stage.clear();
         break;
       }
-      task = std::move(tasks_.front());
+      next = std::move(tasks_.front());
       tasks_.pop_front();
       job_ = std::make_unique<JobContext>([this](std::string_view stage, double fraction) {
         {
@@ -152,11 +93,14 @@ void MeshViewing::run() {
         }
         on_change_();
       });
+      if (next.stopped || ended_) {
+        job_->cancel();
+      }
       state_.stage = "...";
       state_.fraction = 0;
     }
     on_change_();
-    task();
+    next.task();
     on_change_();
   }
   on_change_();
@@ -164,7 +108,10 @@ void MeshViewing::run() {
 
 void MeshViewing::stop() {
   const std::scoped_lock lock(mutex_);
-  tasks_.clear();
+  std::erase_if(tasks_, [](const Waiting& one) { return !one.stays; });
+  for (Waiting& one : tasks_) {
+    one.stopped = true;
+  }
   if (state_.section_due) {
     forget_section();
   }
@@ -180,11 +127,20 @@ void MeshViewing::complain(const Error& error) {
   }
 }
 
+void MeshViewing::doubt_mesh(std::vector<Error> doubts) {
+  const std::scoped_lock lock(mutex_);
+  for (Error& doubt : doubts) {
+    state_.mesh_doubts.push_back(std::move(doubt));
+  }
+}
+
 void MeshViewing::take_mesh(std::shared_ptr<const Mesh> mesh, const RigidTransform& tablet_from_model,
                             const std::string& name) {
   analysis_.reset();
   analysis_options_ = {};
   wedges_file_.clear();
+  unmeasured_.reset();
+  foreign_wedges_.reset();
   {
     const std::scoped_lock lock(mutex_);
     state_.mesh = std::move(mesh);
@@ -202,8 +158,8 @@ void MeshViewing::take_mesh(std::shared_ptr<const Mesh> mesh, const RigidTransfo
     selections_file_.clear();
     state_.tablet_from_model = tablet_from_model;
     state_.name = name;
+    state_.mesh_doubts.clear();
     state_.error.reset();
-    odd_.reset();
     const std::size_t vertices = state_.mesh->positions.size();
     if (state_.mesh->sigma_mm.size() == vertices && vertices > 0) {
       state_.fields[MeshField::kSigma] = std::make_shared<const std::vector<float>>(state_.mesh->sigma_mm);
@@ -221,24 +177,18 @@ void MeshViewing::take_field(MeshField field, std::vector<float> values) {
 
 void MeshViewing::open(const fs::path& file) {
   ask([this, file] {
-    Result<Mesh> read = read_mesh(file, {.may_be_points = true});
+    const WedgesPlace wedges = wedges_beside(file);
+    Result<MeshToView> read = read_mesh_to_view(file, wedges.file);
     if (!read) {
       complain(read.error());
       return;
     }
-    const RigidTransform tablet_from_model = tablet_frame(*read);
-    std::optional<Error> odd = odd_numbers(*read, file);
-    if (const std::optional<Error> turned = turned_outwards(&*read, file.filename().string())) {
-      odd = odd ? odd : turned;
-    }
-    label_ = read_mesh_label(file);
-    take_mesh(std::make_shared<const Mesh>(std::move(*read)), tablet_from_model, file.filename().string());
-    if (odd) {
-      complain(*odd);
-      const std::scoped_lock lock(mutex_);
-      odd_ = odd;
-    }
-    const WedgesPlace wedges = wedges_beside(file);
+    const RigidTransform tablet_from_model = tablet_frame(read->mesh);
+    label_ = std::move(read->label);
+    take_mesh(std::make_shared<const Mesh>(std::move(read->mesh)), tablet_from_model,
+              file.filename().string());
+    unmeasured_ = std::move(read->unmeasured);
+    doubt_mesh(std::move(read->doubts));
     if (wedges.unread) {
       complain(*wedges.unread);
     }
@@ -384,6 +334,7 @@ void MeshViewing::work_out_everything(bool with_invariant) {
                                                        analysis_->fields.mean_edge_mm, {}, *job_)));
   }
   take_measured_wedges();
+  finish_corrections();
 }
 
 }  // namespace dubsar

@@ -7,6 +7,7 @@
 #include "archive/wedge_table.h"
 #include "formats/atomic_file.h"
 #include "formats/mesh_io.h"
+#include "formats/ply_of_unknown_unit.h"
 #include "formats/wedges_json.h"
 #include "formats/writers_turn.h"
 #include "station/analysis.h"
@@ -18,6 +19,26 @@
 namespace dubsar {
 
 namespace fs = std::filesystem;
+
+namespace {
+
+/// Another one that has the name stays; the very same is not kept twice.
+void keep_under_free_name(MeshSelection selection, std::vector<MeshSelection>* all) {
+  const std::string name = selection.name;
+  for (int k = 2;; ++k) {
+    const auto there = std::ranges::find(*all, selection.name, &MeshSelection::name);
+    if (there == all->end()) {
+      all->push_back(std::move(selection));
+      return;
+    }
+    if (*there == selection) {
+      return;
+    }
+    selection.name = name + ' ' + std::to_string(k);
+  }
+}
+
+}  // namespace
 
 void MeshViewing::take_selections(const fs::path& file) {
   const std::shared_ptr<const Mesh> whole = mesh();
@@ -79,32 +100,33 @@ void MeshViewing::change_selections(const std::function<void(std::vector<MeshSel
 }
 
 void MeshViewing::keep_selection(MeshSelection selection) {
-  ask([this, selection = std::move(selection)] {
-    change_selections([&](std::vector<MeshSelection>& all) {
-      const auto same = std::ranges::find(all, selection.name, &MeshSelection::name);
-      if (same != all.end()) {
-        *same = selection;
-      } else {
-        all.push_back(selection);
-      }
-    });
-  });
+  ask(
+      [this, selection = std::move(selection)] {
+        change_selections([&](std::vector<MeshSelection>& all) { keep_under_free_name(selection, &all); });
+      },
+      AskedBy::kPersonForGood);
 }
 
 void MeshViewing::forget_selection(const std::string& name) {
-  ask([this, name] {
-    change_selections([&](std::vector<MeshSelection>& all) {
-      std::erase_if(all, [&](const MeshSelection& one) { return one.name == name; });
-    });
-  });
+  ask(
+      [this, name] {
+        change_selections([&](std::vector<MeshSelection>& all) {
+          std::erase_if(all, [&](const MeshSelection& one) { return one.name == name; });
+        });
+      },
+      AskedBy::kPersonForGood);
 }
 
 void MeshViewing::write_part(MeshSelection selection, const fs::path& file) {
   ask([this, selection = std::move(selection), file] {
     if (const std::shared_ptr<const Mesh> whole = mesh(); whole && fits(selection, *whole)) {
-      const Status outside = check_outside_packages(file);
-      if (const Status written = outside ? write_mesh(file, part_of(*whole, selection), label_) : outside;
-          !written) {
+      Status written = check_outside_packages(file);
+      if (written) {
+        const Mesh part = part_of(*whole, selection);
+        written =
+            unmeasured_ ? write_ply_of_unknown_unit(file, part, label_) : write_mesh(file, part, label_);
+      }
+      if (!written) {
         complain(written.error());
         return;
       }
@@ -136,6 +158,10 @@ void MeshViewing::analyse_part(MeshSelection selection, const fs::path& stem) {
     if (!before.mesh || !fits(selection, *before.mesh)) {
       return;
     }
+    if (unmeasured_) {
+      complain(*unmeasured_);
+      return;
+    }
     const auto part = std::make_shared<const Mesh>(part_of(*before.mesh, selection));
     fs::path mesh_file = stem;
     mesh_file += ".ply";
@@ -161,6 +187,11 @@ void MeshViewing::analyse_part(MeshSelection selection, const fs::path& stem) {
       whole_options_ = analysis_options_;
       whole_wedges_file_ = wedges_file_;
       whole_in_session_ = in_session_;
+      whole_foreign_wedges_ = foreign_wedges_;
+    }
+    std::vector<Error> doubts = before.mesh_doubts;  // it has the numbers of the whole
+    if (foreign_wedges_) {
+      std::erase_if(doubts, [&](const Error& one) { return one.line() == foreign_wedges_->line(); });
     }
     std::optional<ViewedMesh> whole;
     {
@@ -170,6 +201,7 @@ void MeshViewing::analyse_part(MeshSelection selection, const fs::path& stem) {
     }
     // A part keeps the frame of the whole: its obverse is where the tablet's is.
     take_mesh(part, before.tablet_from_model, mesh_file.filename().string());
+    doubt_mesh(std::move(doubts));
     take_wedges(std::move(wedges), analysis->fields.body_count());
     take_field(MeshField::kOpenness, analysis->fields.openness);
     take_field(MeshField::kMeanCurvature, analysis->fields.mean_curvature_per_mm);
@@ -193,6 +225,7 @@ void MeshViewing::leave_part() {
       analysis_options_ = whole_options_;
       wedges_file_ = whole_wedges_file_;
       in_session_ = whole_in_session_;
+      foreign_wedges_ = whole_foreign_wedges_;
       const std::uint64_t number = state_.number;
       state_ = *std::exchange(whole_, std::nullopt);
       state_.number = number + 1;

@@ -7,6 +7,7 @@
 #include <optional>
 #include <utility>
 
+#include "core/inside_out.h"
 #include "core/near_cells.h"
 #include "formats/selections_json.h"
 #include "station/selected_mesh.h"
@@ -30,8 +31,20 @@ Result<std::optional<SelectionFile>> read_if_there(const fs::path& file) {
   return read ? Result<std::optional<SelectionFile>>(*std::move(read)) : std::unexpected(read.error());
 }
 
+/// A mesh that is inside out may have been turned over when they were made: its numbers stayed as they are.
+bool is_surface_of(const SelectionFile& file, const Mesh& mesh) {
+  if (file.surface_xxh128 == surface_digest(mesh)) {
+    return true;
+  }
+  Mesh other_way;
+  other_way.positions = mesh.positions;
+  other_way.faces = mesh.faces;
+  turn_over(&other_way);
+  return file.surface_xxh128 == surface_digest(other_way);
+}
+
 bool is_of(const SelectionFile& file, const Mesh& mesh) {
-  return file.surface_xxh128 == surface_digest(mesh) &&
+  return is_surface_of(file, mesh) &&
          std::ranges::all_of(file.selections, [&](const MeshSelection& one) { return fits(one, mesh); });
 }
 

@@ -22,6 +22,7 @@
 #include "station/command/outputs.h"
 #include "station/command/place_option.h"
 #include "station/mesh_json.h"
+#include "station/mesh_unit_doubt.h"
 #include "station/outward_faces.h"
 #include "station/section_file.h"
 #include "station/selection_store.h"
@@ -50,6 +51,37 @@ Result<Mesh> read(const MeshOptions& options, const CommandContext& context,
                     .job = &context.job});
 }
 
+/// What a unit that nobody said makes doubtful; said in the log.
+std::optional<Error> doubt_unit(const MeshOptions& options, const Mesh& mesh) {
+  std::optional<Error> doubt = options.unit.empty() ? unit_doubt(mesh, options.in, options.in) : std::nullopt;
+  if (doubt) {
+    log_warning(doubt->line());
+  }
+  return doubt;
+}
+
+nlohmann::ordered_json words_of(const std::optional<Error>& doubt) {
+  return doubt ? nlohmann::ordered_json(doubt->what) : nlohmann::ordered_json(nullptr);
+}
+
+/// As the viewer has it, in which selections are made: where nobody said the unit, in the one that its size
+/// tells.
+Result<Mesh> read_as_viewed(const MeshOptions& options, const CommandContext& context,
+                            std::vector<std::string>* passed_over) {
+  Result<Mesh> mesh = read(options, context, passed_over);
+  if (!mesh || !doubt_unit(options, *mesh)) {
+    return mesh;
+  }
+  const Result<UnitBySize> told = unit_by_size(*mesh, options.in);
+  if (!told || told->taken_for.empty()) {
+    return mesh;
+  }
+  MeshOptions taken = options;
+  taken.unit = told->taken_for;
+  passed_over->clear();
+  return read(taken, context, passed_over);
+}
+
 /// With what the file that was read says of itself, and a word on what the new one cannot hold.
 Status write(const MeshOptions& options, const CommandContext& context, const Mesh& mesh,
              const std::vector<std::string>& passed_over) {
@@ -75,6 +107,7 @@ Result<int> check(const MeshOptions& options, CommandContext& context) {
   nlohmann::ordered_json json = mesh_report_json(report);
   const std::optional<Error> fault = inside_out(*mesh, options.in);
   json["inside_out"] = fault.has_value();
+  json["unit_doubt"] = words_of(doubt_unit(options, *mesh));
   if (context.json) {
     CommandContext::print(json);
   } else {
@@ -142,6 +175,7 @@ Result<int> section(const MeshOptions& options, CommandContext& context) {
   if (!mesh) {
     return std::unexpected(mesh.error());
   }
+  const std::optional<Error> doubt = doubt_unit(options, *mesh);
   face_outwards(&*mesh, options.in);
   const Result<CrossSection> cut = cross_section(*mesh, *from, *to, *towards);
   if (!cut) {
@@ -159,7 +193,8 @@ Result<int> section(const MeshOptions& options, CommandContext& context) {
                            {"length_mm", cut->length_mm},
                            {"lowest_mm", cut->lowest_mm},
                            {"lowest_along_mm", cut->lowest_along_mm},
-                           {"highest_mm", cut->highest_mm}});
+                           {"highest_mm", cut->highest_mm},
+                           {"unit_doubt", words_of(doubt)}});
   } else {
     std::printf("%s: %.3f mm long, %.3f mm below the line at %.3f mm\n", options.out.c_str(), cut->length_mm,
                 -cut->lowest_mm, cut->lowest_along_mm);
@@ -170,7 +205,7 @@ Result<int> section(const MeshOptions& options, CommandContext& context) {
 /// What a selection of the viewer holds: a mesh, or a table of its wedges.
 Result<int> part(const MeshOptions& options, CommandContext& context) {
   std::vector<std::string> passed_over;
-  const Result<Mesh> mesh = read(options, context, &passed_over);
+  const Result<Mesh> mesh = read_as_viewed(options, context, &passed_over);
   if (!mesh) {
     return std::unexpected(mesh.error());
   }

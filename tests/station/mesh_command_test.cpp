@@ -185,6 +185,27 @@ TEST_F(MeshCommand, AStripThatTurnsIntoItselfIsNotToldToBeTurnedOver) {
   EXPECT_EQ(checked.err.find("--turn-over"), std::string::npos) << checked.err;
 }
 
+TEST_F(MeshCommand, AUnitThatNobodySaidIsDoubtedWhereLengthsAreTold) {
+  std::ofstream(at("metres.obj")) << "v 0 0 0\nv .03 0 0\nv .03 .03 0\nv 0 .03 0\nv .015 .015 .009\n"
+                                     "f 1 2 5\nf 2 3 5\nf 3 4 5\nf 4 1 5\nf 1 3 2\nf 1 4 3\n";
+  const char* const doubt = "as it stands it is 0.0434 mm large, perhaps its numbers are m";
+  const Outcome checked = run_command({"mesh", "check", at("metres.obj"), "--json"});
+  EXPECT_EQ(checked.status, 0) << checked.err;
+  EXPECT_THAT(checked.complaints(), SizeIs(1)) << checked.err;
+  EXPECT_THAT(checked.err, HasSubstr(doubt));
+  EXPECT_EQ(checked.json()["unit_doubt"], doubt);
+  const Outcome section = cut("metres.obj", "0,.015,.01", ".03,.015,.01", "cut.csv");
+  EXPECT_EQ(section.status, 0) << section.err;
+  EXPECT_THAT(section.complaints(), SizeIs(1)) << section.err;
+  EXPECT_THAT(section.err, HasSubstr(doubt));
+  EXPECT_EQ(section.json()["unit_doubt"], doubt);
+  // Where somebody says it, and where the size is a tablet's.
+  const Outcome said = run_command({"mesh", "check", at("metres.obj"), "--unit", "m", "--json"});
+  EXPECT_THAT(said.complaints(), SizeIs(0)) << said.err;
+  EXPECT_EQ(said.json()["unit_doubt"], nullptr);
+  EXPECT_EQ(cut("tent.obj", "0,15,10", "30,15,10", "cut.csv").json()["unit_doubt"], nullptr);
+}
+
 TEST_F(MeshCommand, ACutThatMeetsNothingWritesNothing) {
   for (const char* file : {"cut.csv", "cut.svg"}) {
     const Outcome beside = cut("tent.obj", "200,0,0", "220,0,0", file);

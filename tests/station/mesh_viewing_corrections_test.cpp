@@ -217,5 +217,70 @@ TEST_F(MeshViewingCorrections, ACorrectionLeavesTheOthersTheIdsThatTheyHad) {
   EXPECT_THAT(read_wedges(file)->former, SizeIs(0));
 }
 
+/// Whoever closes the window or stops has said it all the same.
+TEST_F(MeshViewingCorrections, OneThatIsClosedWhileItIsMeasuredIsNotedAndMadeAtTheNextOpening) {
+  const fs::path file = mesh_.parent_path() / "tablet.wedges.json";
+  const auto said_and_closed = [this](auto say) {
+    MeshViewing viewing([] {});
+    viewing.open(mesh_);
+    test::settle(viewing);
+    say(viewing);
+  };
+  WedgeCorrection gone;
+  gone.at_mm = {wedges_mm_[0]};
+  said_and_closed([&](MeshViewing& viewing) { viewing.correct(gone); });
+  EXPECT_EQ(noted(), 1U);
+  EXPECT_FALSE(fs::exists(file)) << "else it was not closed in the midst";
+  {
+    Viewer viewer(mesh_);
+    EXPECT_FALSE(viewer.state().error) << viewer.state().error->line();
+    ASSERT_TRUE(viewer.state().wedges);
+    EXPECT_THAT(*viewer.state().wedges, SizeIs(wedges_mm_.size() - 1));
+    ASSERT_TRUE(read_wedges(file));
+    EXPECT_EQ(read_wedges(file)->corrections, 1U);
+  }
+  said_and_closed([&](MeshViewing& viewing) { viewing.undo_correction(); });
+  EXPECT_EQ(noted(), 0U);
+  EXPECT_EQ(read_wedges(file)->corrections, 1U);
+  EXPECT_THAT(*Viewer(mesh_).state().wedges, SizeIs(wedges_mm_.size()));
+  EXPECT_EQ(read_wedges(file)->corrections, 0U);
+  EXPECT_THAT(read_wedges(file)->wedges, SizeIs(wedges_mm_.size()));
+}
+
+TEST_F(MeshViewingCorrections, OneThatIsStoppedIsNotedSaidAndMadeWhenItIsSaidAgain) {
+  MeshViewing viewing([] {});
+  viewing.open(mesh_);
+  test::settle(viewing);
+  WedgeCorrection gone;
+  gone.at_mm = {wedges_mm_[0]};
+  viewing.correct(gone);
+  viewing.stop();
+  test::settle(viewing);
+  EXPECT_EQ(noted(), 1U);
+  EXPECT_EQ(viewing.state().corrections, 1U);
+  ASSERT_THAT(viewing.state().not_made, SizeIs(1));
+  EXPECT_THAT(viewing.state().not_made[0], StartsWith("stopped: it is noted"));
+  viewing.correct(gone);
+  test::settle(viewing);
+  EXPECT_EQ(noted(), 1U) << "it is the same";
+  EXPECT_THAT(viewing.state().not_made, SizeIs(0));
+  ASSERT_TRUE(viewing.state().wedges);
+  EXPECT_THAT(*viewing.state().wedges, SizeIs(wedges_mm_.size() - 1));
+  EXPECT_EQ(read_wedges(mesh_.parent_path() / "tablet.wedges.json")->corrections, 1U);
+}
+
+/// What was done by hand is not measured away because its note went astray.
+TEST_F(MeshViewingCorrections, WedgesWhoseNoteIsNotThereOrDamagedStay) {
+  const fs::path file = mesh_.parent_path() / "tablet.wedges.json";
+  Viewer(mesh_).remove_wedge(wedges_mm_[0]);
+  const std::string corrected = *read_whole_file(file);
+  fs::remove(corrections_);
+  EXPECT_FALSE(Viewer(mesh_).state().error);
+  EXPECT_EQ(*read_whole_file(file), corrected);
+  std::ofstream(corrections_) << "{\"corrections\":[";
+  EXPECT_TRUE(Viewer(mesh_).state().error);
+  EXPECT_EQ(*read_whole_file(file), corrected);
+}
+
 }  // namespace
 }  // namespace dubsar

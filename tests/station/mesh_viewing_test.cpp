@@ -16,6 +16,7 @@
 #include "formats/file_label_reader.h"
 #include "formats/selections_json.h"
 #include "formats/wedges_json.h"
+#include "station/selection_store.h"
 #include "station/tablet_record.h"
 #include "tests/station/support/viewed_tablet.h"
 
@@ -44,7 +45,7 @@ TEST_F(MeshViewingTest, NumbersThatAreNoMillimetresAreTold) {
     }
     EXPECT_TRUE(write_file_atomically(mesh_, bytes));
     const ViewedMesh state = Viewer(mesh_).state();
-    return state.error ? state.error->line() : std::string();
+    return state.mesh_doubts.empty() ? std::string() : state.mesh_doubts.front().line();
   };
   EXPECT_THAT(said_of(0.1, nullptr), HasSubstr("perhaps its numbers are cm"));
   EXPECT_THAT(said_of(0.1, nullptr), HasSubstr("mesh convert --unit cm makes"));
@@ -53,6 +54,8 @@ TEST_F(MeshViewingTest, NumbersThatAreNoMillimetresAreTold) {
   EXPECT_THAT(said_of(1000, nullptr), HasSubstr("perhaps its numbers are um"));
   EXPECT_EQ(said_of(1, nullptr), "");
   EXPECT_EQ(said_of(0.2, "ours"), "") << "a part of a tablet whose file says its unit";
+  EXPECT_THAT(said_of(100, nullptr), HasSubstr("no unit makes a tablet of it: it is ")) << "2 m";
+  EXPECT_EQ(said_of(100, "ours"), "") << "an inscribed rock";
   EXPECT_THAT(said_of(0.05, "ours"), HasSubstr("perhaps its numbers are")) << "whatever it says";
 }
 
@@ -65,7 +68,7 @@ TEST_F(MeshViewingTest, AGlbIsInMetresHoweverItIsCalled) {
     const fs::path file = mesh_.parent_path() / name;
     ASSERT_TRUE(write_mesh(file, part)) << name;
     const ViewedMesh state = Viewer(file).state();
-    EXPECT_FALSE(state.error) << state.error->line();
+    EXPECT_THAT(state.mesh_doubts, SizeIs(0)) << state.mesh_doubts.front().line();
   }
 }
 
@@ -136,9 +139,9 @@ TEST_F(MeshViewingTest, AMeshThatIsInsideOutIsTurnedOverWithAWord) {
   turn_over(&turned);
   ASSERT_TRUE(write_mesh(mesh_, turned));
   Viewer one(mesh_);
-  ASSERT_TRUE(one.state().error);
-  EXPECT_THAT(one.state().error->line(), testing::HasSubstr("inside out"));
-  EXPECT_THAT(one.state().error->line(), testing::HasSubstr("turned over"));
+  ASSERT_THAT(one.state().mesh_doubts, SizeIs(1));
+  EXPECT_THAT(one.state().mesh_doubts[0].line(), testing::HasSubstr("inside out"));
+  EXPECT_THAT(one.state().mesh_doubts[0].line(), testing::HasSubstr("turned over"));
   ASSERT_TRUE(one.state().mesh);
   EXPECT_EQ(one.state().mesh->faces, tablet_->faces);
   // So that a cut is of the side that is seen.
@@ -152,6 +155,41 @@ TEST_F(MeshViewingTest, AMeshThatIsInsideOutIsTurnedOverWithAWord) {
   ASSERT_TRUE(as_it_was);
   ASSERT_TRUE(viewing.state().section);
   EXPECT_NEAR(viewing.state().section->lowest_mm, as_it_was->lowest_mm, 1e-6);
+}
+
+/// Neither what the viewer kept of it turned over nor what was kept of it as it lies there is lost.
+TEST_F(MeshViewingTest, WhatIsSelectedOfAMeshThatIsInsideOutIsFoundInItsFile) {
+  Mesh turned = *tablet_;
+  turn_over(&turned);
+  ASSERT_TRUE(write_mesh(mesh_, turned));
+  const fs::path file = selections_file_of(mesh_);
+  Viewer(mesh_).keep("A");
+  const Result<Mesh> as_it_lies = read_mesh(mesh_);
+  const Result<MeshSelection> found = kept_selection(file, *as_it_lies, "A");
+  ASSERT_TRUE(found) << found.error().line();
+  EXPECT_EQ(count_of(found->ranges), 3U);
+  fs::remove(file);
+  ASSERT_TRUE(keep_selections(file, "tablet.ply", *as_it_lies, {{"B", MeshElement::kFace, {{4, 2}}}}));
+  Viewer viewer(mesh_);
+  EXPECT_THAT(*viewer.state().selections, SizeIs(1));
+  viewer.keep("A");
+  EXPECT_THAT(*kept_selections(file, *as_it_lies), SizeIs(2)) << "none is put aside";
+}
+
+TEST_F(MeshViewingTest, ASelectionIsKeptBesideAnotherOfItsName) {
+  MeshViewing viewing([] {});
+  viewing.open(mesh_);
+  settle(viewing);
+  for (const std::uint32_t first : {0U, 10U, 10U, 20U}) {
+    viewing.keep_selection({"A", MeshElement::kFace, {{first, 3}}});
+    settle(viewing);
+  }
+  const std::vector<MeshSelection> kept = *viewing.state().selections;
+  ASSERT_THAT(kept, SizeIs(3)) << "the same is not kept twice";
+  EXPECT_EQ(kept[0], (MeshSelection{"A", MeshElement::kFace, {{0, 3}}}));
+  EXPECT_EQ(kept[1], (MeshSelection{"A 2", MeshElement::kFace, {{10, 3}}}));
+  EXPECT_EQ(kept[2], (MeshSelection{"A 3", MeshElement::kFace, {{20, 3}}}));
+  EXPECT_EQ(*kept_selections(selections_file_of(mesh_), *tablet_), kept);
 }
 
 TEST_F(MeshViewingTest, TwoWhoSelectOnOneMeshLoseNothing) {

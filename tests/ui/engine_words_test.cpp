@@ -147,6 +147,15 @@ TEST(EngineWords, WhyAPlaceIsExcusedIsGerman) {
 }
 
 TEST(EngineWords, RefusalsOfCorrectionsAndArtefactsAreGerman) {
+  EXPECT_EQ(translated("stopped: it is noted, and made with the next one or when the mesh is opened again",
+                       Language::kGerman),
+            "angehalten: es ist vermerkt und wird mit der nächsten gemacht, oder wenn das Netz wieder "
+            "geöffnet wird");
+  EXPECT_EQ(translated("no unit makes a tablet of it: it is 1952 mm; look what its numbers are, and make "
+                       "millimetres of them",
+                       Language::kGerman),
+            "keine Einheit macht eine Tafel daraus: es sind 1952 mm; nachsehen, was seine Zahlen sind, und "
+            "Millimeter daraus machen");
   EXPECT_EQ(translated("no wedge is measured there: too shallow", Language::kGerman),
             "dort lässt sich kein Keil messen: zu flach");
   EXPECT_EQ(translated("one of the parts is not measured as a wedge, number 2: too few faces of the mesh",

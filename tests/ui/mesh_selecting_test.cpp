@@ -114,6 +114,56 @@ TEST_F(Selecting, OnlyWhatIsSeen) {
   EXPECT_EQ(back, 0U);
 }
 
+/// A slab's side wall belongs to the picture's rim alone, however little the view is turned.
+TEST_F(Selecting, AWallThatIsSeenEdgeOnIsNot) {
+  constexpr float kHighMm = 9;
+  constexpr std::uint32_t kN = 301;
+  const auto of_wall = [&](float leaning_deg) {
+    Mesh mesh = two_sheets(kN);
+    const auto first = static_cast<std::uint32_t>(mesh.positions.size());
+    const std::size_t faces = mesh.faces.size();
+    const float out_mm = kHighMm * std::tan(leaning_deg * 0.0174533F);
+    for (std::uint32_t down = 0; down <= kN; ++down) {
+      const float part = static_cast<float>(kN - down) / kN;  // the lowest first: the faces look outwards
+      for (std::uint32_t x = 0; x <= kN; ++x) {
+        mesh.positions.emplace_back(40 - static_cast<float>(x) * 40 / kN, 30 + part * out_mm,
+                                    -part * kHighMm);
+      }
+    }
+    test::add_raster_faces(mesh, first, kN);
+    for (std::size_t f = faces; f < mesh.faces.size(); ++f) {
+      const auto& [a, b, c] = mesh.faces[f];
+      const Eigen::Vector3f& at = mesh.positions[a];
+      if ((mesh.positions[b] - at).cross(mesh.positions[c] - at).z() < 0) {
+        std::swap(mesh.faces[f][1], mesh.faces[f][2]);
+      }
+    }
+    shown_ = shown_mesh(mesh);
+    view_->show(shown_);
+    camera_.fit(shown_.box_mm, static_cast<float>(kWidth) / kHeight);
+    view_->draw_whole(camera_, {}, kWidth, kHeight);
+    EXPECT_TRUE(
+        select(MeshElement::kFace, box(-1, -1, kWidth + 1, kHeight + 1), SelectionStep::kUnion, false));
+    const BitMarks marks = marks_now();
+    view_->clear_selection();
+    std::array<std::size_t, 3> sums{};  // of the wall, of the front, of the wall in all
+    for (std::size_t f = 0; f < shown_.faces.size(); ++f) {
+      const bool wall = shown_.face_of[f] >= faces;
+      sums[wall ? 0 : 1] += marks[f] && (wall || in_front(f)) ? 1 : 0;
+      sums[2] += wall ? 1 : 0;
+    }
+    return sums;
+  };
+  for (const float leaning_deg : {0.04F, 0.5F, 1.5F}) {
+    const auto [wall, front, all] = of_wall(leaning_deg);
+    EXPECT_EQ(wall, 0U) << leaning_deg;
+    EXPECT_EQ(front, std::size_t{2} * kN * kN) << leaning_deg;
+  }
+  const auto [wall, front, all] = of_wall(20);
+  EXPECT_EQ(all, std::size_t{2} * kN * kN);
+  EXPECT_GT(static_cast<double>(wall), 0.95 * static_cast<double>(all)) << "a slope is seen";
+}
+
 TEST_F(Selecting, WhatIsHiddenCloseBehindIsNotSeenAndASlopeIs) {
   constexpr float kApartMm = 0.15F;
   shown_ = shown_mesh(two_sheets(301, kApartMm));

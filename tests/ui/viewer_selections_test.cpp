@@ -317,5 +317,60 @@ TEST_F(ViewerSelections, PolygonsAreAddedCutAndTakenAway) {
   EXPECT_EQ(faces["either"], wanted);
 }
 
+/// Also where only one of the files of a number is there already.
+TEST_F(ViewerSelections, NothingThatIsThereIsWrittenOver) {
+  const std::map<std::string, std::string> there{{in("tablet_section_01.svg"), "a drawing"},
+                                                 {in("tablet_part_01.wedges.json"), "wedges"},
+                                                 {in("tablet_part_02.selections.json"), "selections"}};
+  for (const auto& [file, text] : there) {
+    std::ofstream(file) << text;
+  }
+  const auto outcome = play(R"(wait wedges 60
+wait whole
+wait idle
+click tool-section
+click surface 0.4 0.5
+click surface 0.6 0.5
+wait section
+click keep-section
+wait section-kept
+wait idle
+click tool-select
+click surface 0.46 0.46
+click surface 0.54 0.46
+click surface 0.54 0.54
+click surface 0.46 0.54
+click surface 0.46 0.46
+wait selected
+expect whole.clear-selection
+click analyse-part
+wait part 60
+wait idle 60
+quit
+)");
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  for (const auto& [file, text] : there) {
+    EXPECT_EQ(test::bytes_of(file), text) << file;
+  }
+  for (const char* name : {"tablet_section_02.csv", "tablet_section_02.svg", "tablet_part_03.ply",
+                           "tablet_part_03.wedges.json"}) {
+    EXPECT_TRUE(std::filesystem::exists(in(name))) << name;
+  }
+}
+
+/// In the language with the longer words, also in a narrow window: beside the number where it fits, else
+/// below.
+TEST_F(ViewerSelections, TheButtonThatClearsThemIsNotCutOff) {
+  std::ofstream(in("wide.script")) << "wait wedges 60\nwait whole\nwait idle\nclick tool-select\n"
+                                      "click surface 0.1 0.1\nclick surface 0.9 0.1\nclick surface 0.9 0.9\n"
+                                      "click surface 0.1 0.9\nclick surface 0.1 0.1\nwait selected\n"
+                                      "expect whole.clear-selection\nquit\n";
+  for (const char* width : {"1366", "1000"}) {
+    const auto outcome = run_command({"view", in("tablet.ply"), "--script", in("wide.script"), "--language",
+                                      "de", "--width", width, "--height", "768"});
+    EXPECT_EQ(outcome.status, 0) << width << ": " << outcome.err;
+  }
+}
+
 }  // namespace
 }  // namespace dubsar

@@ -81,7 +81,7 @@ TEST_F(MeshInput, APlyOfPointsIsShown) {
 
 TEST_F(MeshInput, NumbersThatMeasureWronglyAreSaid) {
   const std::string faces = "f 1 2 3\nf 2 4 3\n";
-  const std::string says = "wait whole\nwait error\nquit\n";
+  const std::string says = "wait whole\nwait mesh-doubt\nquit\n";
   const Outcome far =
       look_at("far.obj", "v 4000000 0 0\nv 4000010 0 0\nv 4000000 10 0\nv 4000010 10 1\n" + faces, says);
   EXPECT_EQ(far.status, 0) << far.err;
@@ -89,7 +89,7 @@ TEST_F(MeshInput, NumbersThatMeasureWronglyAreSaid) {
       look_at("metres.obj", "v 0 0 0\nv 0.04 0 0\nv 0 0.03 0\nv 0.04 0.03 0.01\n" + faces, says);
   EXPECT_EQ(small.status, 0) << small.err;
   const Outcome sound = look_at("sound.obj", "v 500 0 0\nv 510 0 0\nv 500 10 0\nv 510 10 1\n" + faces,
-                                "wait whole\nwait idle\npause 0.3\nexpect idle\nwait error 1\nquit\n");
+                                "wait whole\nwait idle\npause 0.3\nexpect idle\nwait mesh-doubt 1\nquit\n");
   EXPECT_EQ(sound.status, 1) << "nothing is wrong with it";
 }
 
@@ -277,6 +277,39 @@ TEST_F(MeshInput, TwoSideBySideTurnTogetherOrAlone) {
   // One that cannot be read is named, and nothing opens.
   const Outcome broken = run_command({"view", in("left.obj"), in("pair.script")});
   EXPECT_EQ(broken.status, 2);
+}
+
+TEST_F(MeshInput, OfTwoSideBySideEachIsDoubtedAsItIsAlone) {
+  const auto in = [&](const char* name) { return (folder_.path() / name).string(); };
+  std::ofstream(in("left.obj")) << grooved_plate();
+  std::istringstream plate(grooved_plate());
+  std::ofstream in_metres(in("right.obj"));
+  for (std::string kind; plate >> kind;) {
+    double x = 0, y = 0, z = 0;
+    plate >> x >> y >> z;
+    const double scale = kind == "v" ? 0.001 : 1;
+    in_metres << kind << ' ' << x * scale << ' ' << y * scale << ' ' << z * scale << '\n';
+  }
+  in_metres.close();
+  std::ofstream(in("pair.script")) << "wait whole\nwait idle\nexpect doubt.right-tablet\nscreenshot "
+                                   << in("both.png") << "\nquit\n";
+  const Outcome outcome = run_command({"view", in("left.obj"), in("right.obj"), "--script", in("pair.script"),
+                                       "--width", "1300", "--height", "700"});
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const Image both = test::read_png(in("both.png"));
+  ASSERT_EQ(both.width, 1300);
+  const auto reds = [&](int from, int to) {
+    int count = 0;
+    for (int y = 0; y < both.height; ++y) {
+      for (int x = from; x < to; ++x) {
+        const auto rgb = both.rgb(x, y);
+        count += rgb[0] > rgb[1] + 80 && rgb[0] > rgb[2] + 80 ? 1 : 0;
+      }
+    }
+    return count;
+  };
+  EXPECT_GT(reds(both.width / 2, both.width), 200) << "its numbers are no millimetres";
+  EXPECT_LT(reds(0, both.width / 2), 20);
 }
 
 /// As in large letters, in the language with the longer words.

@@ -136,8 +136,24 @@ constexpr EnginePhrase kRemarks[] = {
      " mm vom Ursprung seiner Zahlen, wo Orte so genau sind: "},
     {"export it again with its middle at the origin", "noch einmal mit der Mitte im Ursprung ausgeben"},
     {" mm large, perhaps its numbers are ", " mm groß, vielleicht sind seine Zahlen in "},
+    {"no unit makes a tablet of it: it is ", "keine Einheit macht eine Tafel daraus: es sind "},
+    {"look what its numbers are, and make millimetres of them",
+     "nachsehen, was seine Zahlen sind, und Millimeter daraus machen"},
     {"dubsar mesh convert --unit ", "noch einmal in Millimetern ausgeben, nicht in "},
     {" makes millimetres of them", ""},
+    {"dubsar mesh convert --unit mm mends the file",
+     "noch einmal mit Millimetern als seiner Einheit ausgeben"},
+    {"as it stands it is ", "so, wie es dasteht, ist es "},
+    {"its numbers are taken for ", "seine Zahlen gelten als "},
+    {", by its size alone: ", ", nur nach seiner Größe: "},
+    {"its wedges are not measured before it is said what its numbers are",
+     "seine Keile werden erst gemessen, wenn gesagt ist, was seine Zahlen sind"},
+    {"these wedges are not shown: only ", "diese Keile werden nicht gezeigt: nur "},
+    {" % of them lie on this mesh, so they are another one's, or it was moved or has another unit since",
+     " % davon liegen auf diesem Netz, sie gehören also zu einem anderen, oder es wurde seither verschoben "
+     "oder "
+     "hat eine andere Einheit"},
+    {"measure them on this mesh", "sie auf diesem Netz messen"},
     // why a place is excused
     {"no pose that the rig allows has it within its field, unshaded for laser and camera, at a slope below "
      "70°",

@@ -402,6 +402,9 @@ constexpr EnginePhrase kPhrases[] = {
      "einer der Teile lässt sich nicht als Keil messen, Nummer "},
     {"other wedges lie there: delete or split them first",
      "dort liegen andere Keile: zuerst sie entfernen oder teilen"},
+    {"stopped: it is noted, and made with the next one or when the mesh is opened again",
+     "angehalten: es ist vermerkt und wird mit der nächsten gemacht, oder wenn das Netz wieder geöffnet "
+     "wird"},
     {"no wedge is measured there: ", "dort lässt sich kein Keil messen: "},
     {"too few vertices of the mesh", "zu wenige Punkte des Netzes"},
     {"too few faces of the mesh", "zu wenige Flächen des Netzes"},

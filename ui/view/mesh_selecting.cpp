@@ -34,9 +34,10 @@ flat out uint selected;
 
 vec3 clip_of(vec3 p) { return (clip_from_model * vec4(p, 1.0)).xyz; }
 
-// Clip depth grows away from the eye.
+// Clip depth grows away from the eye. What stands within 2 degrees of edge-on shows nothing of its area.
 bool is_towards(vec3 n) {
-  return dot(vec3(clip_from_model[0].z, clip_from_model[1].z, clip_from_model[2].z), n) < 0.0;
+  vec3 away = vec3(clip_from_model[0].z, clip_from_model[1].z, clip_from_model[2].z);
+  return dot(away, n) < -0.0349 * length(away) * length(n);
 }
 
 bool is_in_polygon(vec3 clip) {

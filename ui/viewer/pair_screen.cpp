@@ -5,11 +5,49 @@
 #include <GLFW/glfw3.h>
 
 #include <algorithm>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "ui/shell/face_texts.h"
 #include "ui/viewer/hand.h"
 
 namespace dubsar::ui {
+
+namespace {
+
+/// What is to be known of a mesh, in red or amber as it is said of one alone.
+using Remark = std::pair<Eigen::Vector4f, std::string>;
+std::vector<Remark> remarks_on(const UiContext& ui, const ShownMesh& shown,
+                               const std::optional<Error>& error) {
+  std::vector<Remark> out;
+  if (error) {
+    out.emplace_back(ui.colours.bad, translated(*error, ui.preferences.language));
+  }
+  if (shown.left_out > 0) {
+    out.emplace_back(ui.colours.amber, filled(ui.text(Text::kLeftOut), grouped(shown.left_out)));
+  }
+  if (shown.instead_of_faces > 0) {
+    out.emplace_back(ui.colours.amber, filled(ui.text(Text::kFewerFaces), grouped(shown.faces.size()),
+                                              grouped(shown.instead_of_faces)));
+  }
+  return out;
+}
+
+/// Below each other from `at` on, legible over the clay too.
+void draw_remarks(const UiContext& ui, const std::vector<Remark>& remarks, ImVec2 at, float wide) {
+  ImDrawList* draw = ImGui::GetWindowDrawList();
+  const float letter = ui.fonts.small->FontSize;
+  for (const auto& [colour, words] : remarks) {
+    const ImVec2 size = ui.fonts.small->CalcTextSizeA(letter, 1e6F, wide, words.c_str());
+    draw->AddRectFilled(at, {at.x + size.x, at.y + size.y}, packed(ui.colours.panel, 0.9F), 4);
+    draw->AddText(ui.fonts.small, letter, at, packed(colour), words.c_str(), nullptr, wide);
+    at.y += size.y + ui.px(0.2F);
+  }
+}
+
+}  // namespace
 
 PairScreen::PairScreen(MeshViewing& left, MeshViewing& right) {
   panes_[0].viewing = &left;
@@ -179,6 +217,18 @@ void PairScreen::draw_pane(UiContext& ui, Pane& pane, const char* name, ImVec2 s
   draw->AddText(nullptr, 0, {origin.x + ui.px(1), origin.y + ui.px(0.6F)},
                 packed(pane.surface.empty() && pane.state.error ? ui.colours.bad : ui.colours.text),
                 words.c_str(), nullptr, size.x - ui.px(2));
+  if (!pane.surface.empty()) {
+    const float under_name = ImGui::CalcTextSize(words.c_str(), nullptr, false, size.x - ui.px(2)).y;
+    std::vector<Remark> remarks = remarks_on(ui, pane.prepared.shown(), pane.state.error);
+    for (const Error& doubt : pane.state.mesh_doubts) {
+      ui.facts.insert("mesh-doubt");
+      remarks.emplace_back(ui.colours.bad, translated(doubt, ui.preferences.language));
+    }
+    draw_remarks(ui, remarks, {origin.x + ui.px(1), origin.y + ui.px(0.8F) + under_name}, size.x - ui.px(2));
+    if (!remarks.empty()) {
+      ui.facts.insert(fmt::format("doubt.{}", name));
+    }
+  }
   ImGui::EndChild();
 }
 

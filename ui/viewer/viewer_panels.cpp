@@ -197,6 +197,10 @@ void ViewerScreen::draw_foot(UiContext& ui) {
   }
   draw_picture_foot(ui);
   ImGui::PushFont(ui.fonts.small);
+  for (const Error& doubt : state_.mesh_doubts) {
+    ui.facts.insert("mesh-doubt");
+    coloured_text(ui.colours.bad, translated(doubt, ui.preferences.language).c_str());
+  }
   if (state_.error && !surface_.empty()) {
     ui.facts.insert("error");
     coloured_text(ui.colours.bad, translated(*state_.error, ui.preferences.language).c_str());

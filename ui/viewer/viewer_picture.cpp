@@ -43,7 +43,7 @@ void ViewerScreen::begin_picture(const UiContext& ui) {
   look.ground = {0, 0, 0, 1};
   picture_note_.clear();
   still_mm_per_px_ = mm_per_px;
-  still_file_ = unused_file(fmt::format("{}dpi", dpi_), ".png");
+  still_file_ = unused_file(fmt::format("{}dpi", dpi_), {".png"});
   still_.emplace(camera, look, static_cast<int>(width), static_cast<int>(height));
 }
 

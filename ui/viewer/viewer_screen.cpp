@@ -310,17 +310,23 @@ void ViewerScreen::choose(int wedge, bool go_there) {
   camera_.centre_mm = chosen.depth_point_mm.cast<float>();
 }
 
-std::filesystem::path ViewerScreen::unused_file(const std::string& what, const std::string& ending) {
+std::filesystem::path ViewerScreen::unused_file(const std::string& what,
+                                                std::initializer_list<const char*> endings) {
   const std::string stem = state_.name.empty() ? "model" : std::filesystem::path(state_.name).stem().string();
-  std::filesystem::path file;
-  std::error_code error;
-  int k = 0;
-  do {
-    ++k;
-    file = pictures_ / fmt::format("{}_{}_{:02}{}", stem, what, k, ending);
-  } while (handed_out_.contains(file) || std::filesystem::exists(file, error));
-  handed_out_.insert(file);
-  return file;
+  for (int k = 1;; ++k) {
+    const std::filesystem::path numbered = pictures_ / fmt::format("{}_{}_{:02}", stem, what, k);
+    const bool is_free = std::ranges::none_of(endings, [&](const char* ending) {
+      const std::filesystem::path file = numbered.string() + ending;
+      std::error_code error;
+      return handed_out_.contains(file) || std::filesystem::exists(file, error);
+    });
+    if (is_free) {
+      for (const char* ending : endings) {
+        handed_out_.insert(numbered.string() + ending);
+      }
+      return numbered.string() + *endings.begin();
+    }
+  }
 }
 
 }  // namespace dubsar::ui

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <future>
+#include <initializer_list>
 #include <memory>
 #include <optional>
 #include <set>
@@ -94,8 +95,10 @@ class ViewerScreen {
   void draw_tools(UiContext& ui);
   /// What is drawn is the mesh of state_.
   [[nodiscard]] bool is_current() const { return !surface_.empty() && prepared_.is_of(state_); }
-  /// NAME_WHAT_01.ENDING of the pictures' folder, the first that is free.
-  [[nodiscard]] std::filesystem::path unused_file(const std::string& what, const std::string& ending);
+  /// NAME_WHAT_01 of the pictures' folder with the first of the endings; the first number under which none of
+  /// them is there.
+  [[nodiscard]] std::filesystem::path unused_file(const std::string& what,
+                                                  std::initializer_list<const char*> endings);
   [[nodiscard]] int wedge_at(const Eigen::Vector2f& px, ImVec2 size) const;
   /// What is clicked on the surface is a place on it.
   [[nodiscard]] bool takes_places() const;

@@ -51,7 +51,7 @@ void ViewerScreen::draw_section_panel(UiContext& ui) {
       filled(ui.text(Text::kSectionLine), section.length_mm, std::max(0.0, -section.lowest_mm)).c_str());
   if (plain_button(ui, "keep-section", ui.text(Text::kKeepSection),
                    !section.lines.empty() && state_.stage.empty())) {
-    section_file_ = unused_file("section", ".csv");
+    section_file_ = unused_file("section", {".csv", ".svg"});
     viewing_.keep_section(std::filesystem::path(section_file_).replace_extension());
   }
   if (!state_.written.empty() && state_.written.front() == section_file_) {

@@ -14,6 +14,9 @@ namespace {
 
 /// Kept selections that are listed before the list scrolls.
 constexpr int kMostListed = 4;
+/// Of a part: what is written of it, and what a person may have said of another one of its number.
+constexpr std::initializer_list<const char*> kOfAPart{".ply", ".wedges.json", ".wedges.corrections.json",
+                                                      ".selections.json"};
 
 /// Places of the marked.
 std::vector<std::uint32_t> chosen_of(const BitMarks& marks) {
@@ -211,21 +214,26 @@ void ViewerScreen::draw_selected(UiContext& ui) {
                                 ? filled(ui.text(Text::kSelected), grouped(selected_.size()), selected_mm2_)
                                 : filled(ui.text(Text::kSelectedPoints), grouped(selected_.size()));
   coloured_text(ui.colours.text, words.c_str());
-  ImGui::SameLine();
+  const ImGuiStyle& style = ImGui::GetStyle();
+  const float wide = ImGui::CalcTextSize(ui.text(Text::kClear)).x + 2 * style.FramePadding.x;
+  const float end = ImGui::GetCursorScreenPos().x + ImGui::GetContentRegionAvail().x;
+  if (ImGui::GetItemRectMax().x + style.ItemSpacing.x + wide <= end) {
+    ImGui::SameLine();
+  }
   if (plain_button(ui, "clear-selection", ui.text(Text::kClear))) {
     clear_selected();
     return;
   }
   const bool idle = state_.stage.empty() && !selected_.empty();
   if (plain_button(ui, "keep-selection", ui.text(Text::kKeepSelection), idle)) {
-    viewing_.write_part(selection_now(), unused_file("part", ".ply"));
+    viewing_.write_part(selection_now(), unused_file("part", kOfAPart));
   }
   if (plain_button(ui, "selected-wedges", ui.text(Text::kWedgesAsTable), idle && state_.wedges)) {
-    viewing_.write_wedges_of(selection_now(), unused_file("wedges", ".csv"));
+    viewing_.write_wedges_of(selection_now(), unused_file("wedges", {".csv"}));
   }
   if (plain_button(ui, "analyse-part", ui.text(Text::kAnalysePart),
                    idle && select_of_ == MeshElement::kFace)) {
-    viewing_.analyse_part(selection_now(), unused_file("part", ".ply").replace_extension());
+    viewing_.analyse_part(selection_now(), unused_file("part", kOfAPart).replace_extension());
   }
   ImGui::TextUnformatted(ui.text(Text::kSelectionName));
   ImGui::SameLine();

@@ -72,6 +72,7 @@ class OnAViewedTablet : public testing::Test {
     tablet_ = new Mesh(sim::make_tablet(options, job)->mesh);
     const Result<Analysis> analysis = analyze_mesh(*tablet_, {}, job);
     ASSERT_TRUE(analysis);
+    wedges_mm_.clear();  // of a suite before
     for (const Wedge& wedge : analysis->set.wedges) {
       wedges_mm_.push_back(wedge.depth_point_mm);
     }
