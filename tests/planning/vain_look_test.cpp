@@ -13,6 +13,7 @@
 #include "planning/excuse.h"
 #include "planning/next_view.h"
 #include "planning/red_map.h"
+#include "planning/view_prediction.h"
 #include "tests/planning/support/pebble.h"
 
 namespace dubsar {
@@ -187,6 +188,26 @@ TEST(VainLook, WhatIsThinnedOutIsJudgedToo) {
   EXPECT_THAT(views.best_chance, Each(Ge(0.0F)));
   EXPECT_EQ(views.best_chance[5], 0.0F);
   EXPECT_GE(views.best_chance[4], 0.05F);
+}
+
+/// Whether or not it looked so far: where no rig is known a new view is supposed to.
+TEST(VainLook, AViewThatWasTakenForNothingIsNotAdvisedAgain) {
+  Session session;
+  session.scan(turned(0, 0));
+  const auto scans = session.map.scans();
+  const ModelSurface surface = model_surface(scans, nullptr, {});
+  const double noise_mm[] = {0.02};
+  std::vector<RedTarget> targets(1);
+  targets[0].position_mm = targets[0].sample_mm = {11.0, 0, 2.1};  // as deep as the scan's last returns
+  targets[0].area_mm2 = 1;
+  const ViewCandidate same{scans[0].model_from_scanner, {}, {}, false, {}};
+  const ScannerModel scanner = ScannerModel::of(*scans[0].grid, noise_mm[0]);
+  const double before = clearing_chances(same, scanner, surface, targets)[0];
+  note_tries(scans, nullptr, noise_mm, surface, targets);
+  EXPECT_TRUE(targets[0].tried.empty()) << "which no excuse may rest on";
+  EXPECT_EQ(targets[0].perhaps.size(), 1U);
+  EXPECT_GT(before, 0.5);
+  EXPECT_LT(clearing_chances(same, scanner, surface, targets)[0], 0.5 * before);
 }
 
 }  // namespace
