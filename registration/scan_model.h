@@ -236,10 +236,8 @@ class ScanModel {
   [[nodiscard]] std::vector<int> warn_of_steps(const std::vector<int>& ids);
   /// Marks which show labelled pins elsewhere than the rest.
   void warn_of_pins(const std::vector<int>& ids);
-  /// How the scan, where it lies, is stretched against these others; `ids` may hold it.
-  [[nodiscard]] std::optional<ScanStretch> stretch_among(int id, std::vector<int> ids) const;
-  /// How the scan, where it lies, moved against these others; `ids` may hold it.
-  [[nodiscard]] std::optional<ScanStep> step_among(int id, std::vector<int> ids) const;
+  /// The scan where it lies, judged against these others alone; `ids` may hold it.
+  [[nodiscard]] InGroup placed_among(int id, const std::vector<int>& ids) const;
   [[nodiscard]] std::string name_of(int id) const;  ///< for people
   /// Said of what is wrong with a scan where these, but for it, are one other only; empty where they are
   /// more.

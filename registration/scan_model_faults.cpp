@@ -173,7 +173,9 @@ void ScanModel::warn_of_stretched(const std::vector<int>& ids, std::vector<int> 
                            [&](std::size_t k) { return stretches[k]->largest(); });
   for (const std::size_t k : accused) {
     if (sound.size() < ids.size()) {
-      const std::optional<ScanStretch> alone = stretch_among(ids[k], sound);
+      const InGroup placed = placed_among(ids[k], sound);
+      const std::optional<ScanStretch> alone =
+          find_stretch(*placed.scan.surface, model_scans(placed.others), placed.fit);
       if (alone && alone->acquits_of(*stretches[k])) {
         continue;
       }
@@ -181,15 +183,6 @@ void ScanModel::warn_of_stretched(const std::vector<int>& ids, std::vector<int> 
     std::erase(sound, ids[k]);
     add_warning(ids[k], reason_of(*stretches[k]) + only_one(ids, ids[k]));
   }
-}
-
-std::optional<ScanStretch> ScanModel::stretch_among(int id, std::vector<int> ids) const {
-  std::erase(ids, id);
-  const Scan& scan = scans_.at(id);
-  const std::vector<ModelScan> model = model_of(ids);
-  const ModelFit fit =
-      judge_in_model(*scan.features.surface, model, scan.group_from_scanner, options_.search.fit);
-  return find_stretch(*scan.features.surface, model, fit);
 }
 
 std::vector<int> ScanModel::warn_of_steps(const std::vector<int>& ids) {
@@ -215,22 +208,29 @@ std::vector<int> ScanModel::warn_of_steps(const std::vector<int>& ids) {
   std::ranges::stable_sort(accused, std::ranges::greater{}, [&](std::size_t k) { return steps[k]->chi2; });
   std::vector<int> still = ids;
   for (const std::size_t k : accused) {
-    const std::optional<ScanStep> step = still.size() < ids.size() ? step_among(ids[k], still) : steps[k];
-    if (is_told(step, ids[k])) {
+    if (still.size() < ids.size()) {
+      const InGroup placed = placed_among(ids[k], still);
+      steps[k] = find_step(*placed.scan.surface, model_scans(placed.others), placed.fit);
+    }
+    if (is_told(steps[k], ids[k])) {
       std::erase(still, ids[k]);
-      add_warning(ids[k], reason_of(*step));
+      add_warning(ids[k], reason_of(*steps[k]));
     }
   }
   return still;
 }
 
-std::optional<ScanStep> ScanModel::step_among(int id, std::vector<int> ids) const {
-  std::erase(ids, id);
+ScanModel::InGroup ScanModel::placed_among(int id, const std::vector<int>& ids) const {
   const Scan& scan = scans_.at(id);
-  const std::vector<ModelScan> model = model_of(ids);
-  const ModelFit fit =
-      judge_in_model(*scan.features.surface, model, scan.group_from_scanner, options_.search.fit);
-  return find_step(*scan.features.surface, model, fit);
+  InGroup out{{scan.features.surface, scan.group_from_scanner}, {}, {}};
+  for (const int other : ids) {
+    if (other != id) {
+      out.others.push_back({scans_.at(other).features.surface, scans_.at(other).group_from_scanner});
+    }
+  }
+  out.fit = judge_in_model(*out.scan.surface, model_scans(out.others), scan.group_from_scanner,
+                           options_.search.fit);
+  return out;
 }
 
 void ScanModel::add_warning(int id, const std::string& said) {
