@@ -90,8 +90,7 @@ std::string profile_table(const std::vector<WedgeProfile>& profiles) {
       "Slope and openings are read at wedges of which 0.8 or more is left (intact) and that are not worn "
       "(roundness at most 0.02). Every wedge by itself, with what it is uncertain by, stands in the file. "
       "Sides are named by the direction of the wedges here, elsewhere on this page by the tablet's shape and "
-      "how "
-      "it was laid down: where these differ, one side has two names.";
+      "how it was laid down: where these differ, one side has two names.";
   if (beyond_mesh > 0) {
     aside += " The mesh ends before " +
              counted(beyond_mesh, "edge does: its length is", "edges do: their lengths are") + " in no row.";

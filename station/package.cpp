@@ -238,9 +238,6 @@ Result<Package> write_package(const fs::path& session, const fs::path& to, const
   const Mesh& mesh = source->results().mesh;
   opening.done("reading");
   PageFacts facts = page_facts_of(store);
-  if (facts.device.starts_with("replay:")) {
-    facts.device += said_by_files(store);
-  }
   const Result<std::string> simulated = simulated_words(store);
   if (!simulated) {
     return std::unexpected(simulated.error());
@@ -276,6 +273,9 @@ Result<Package> write_package(const fs::path& session, const fs::path& to, const
                          .left_out = {},
                          .job = job};
   const bool is_named_by_session = tablet.cdli.empty() && tablet.museum_number.empty();
+  if (content.comes_from_files()) {
+    content.facts.device += said_by_files(store);
+  }
   if (const std::string& behind = source->behind(); !behind.empty()) {
     log_warning(session.string() + ": " + behind + "; run dubsar register and plan on it, then export again");
     content.lacking.push_back("Take care: " + behind +

@@ -73,8 +73,8 @@ std::string sides_sentence(const PackageContent& content) {
   };
   return fmt::format(
       "Take care: pictures, wedges and the report's table of wedges name the sides by the direction of the "
-      "wedges, verdict and the rest of the report by the "
-      "tablet's shape and how it was laid down, and here they differ. What pictures and wedges call the "
+      "wedges, verdict and the rest of the report by the tablet's shape and how it was laid down, and here "
+      "they differ. What pictures and wedges call the "
       "obverse, "
       "the report calls the {}; their top edge is the report's {}, their right edge its {}.",
       name(Eigen::Vector3d::UnitZ()), name(Eigen::Vector3d::UnitY()), name(Eigen::Vector3d::UnitX()));
@@ -206,8 +206,7 @@ Status add_readme(PackageContent& content) {
         "How the tablet lies is worked out from what was scanned of it. The verdict is not conclusive: where "
         "whole sides are missing it may lie askew by some ten degrees or more in pictures and drawings, "
         "lengths in them are then too short, and its extent is not that of the tablet. What is measured on "
-        "the "
-        "model itself does not go by that.",
+        "the model itself does not go by that.",
         2);
   }
   std::vector<std::string> lacking = content.lacking;
