@@ -13,6 +13,7 @@
 #include "planning/convex_hull.h"
 #include "planning/places_in_field.h"
 #include "planning/tablet_on_stage.h"
+#include "planning/turn_words.h"
 
 namespace dubsar {
 
@@ -157,32 +158,6 @@ std::vector<Placement> placements_of(const Rig& rig, const Placement& now, const
 }
 
 }  // namespace
-
-std::string say_turn(const Eigen::Matrix3d& turn, const Eigen::Matrix3d& frame_from_model,
-                     const Eigen::Vector3d& up, const ModelFaces& faces) {
-  const double angle = Eigen::AngleAxisd(turn).angle();
-  const double tipped = std::acos(std::clamp(up.dot(turn * up), -1.0, 1.0));
-  if (tipped < rad_from_deg(5.0)) {
-    if (angle < rad_from_deg(2.0)) {
-      return "leave the tablet as it lies";
-    }
-    const Eigen::AngleAxisd about(turn);
-    const bool left = about.axis().dot(up) * about.angle() > 0;
-    return std::string("turn the tablet where it lies, ") + degrees(angle) +
-           (left ? " counter-clockwise seen from the camera" : " clockwise seen from the camera");
-  }
-  Face best = Face::kObverse;
-  double most = -1e9;
-  for (const Face face : kFaces) {
-    const Eigen::Vector3d n = frame_from_model * faces.normal(face);
-    const double gain = up.dot(turn * n) - up.dot(n);
-    if (gain > most + 1e-9) {
-      most = gain;
-      best = face;
-    }
-  }
-  return std::string("turn ") + spoken(best) + " towards the camera, " + degrees(tipped);
-}
 
 std::vector<ViewCandidate> rig_candidates(const Rig& rig, const StageState& state, const PlacedScan& last,
                                           const ModelSurface& surface, const CandidateOptions& options) {

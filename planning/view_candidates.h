@@ -52,9 +52,4 @@ struct CandidateOptions {
 [[nodiscard]] std::vector<ViewCandidate> free_candidates(const PlacedScan& last, const ModelSurface& surface,
                                                          const CandidateOptions& options = {});
 
-/// "turn the top edge towards the camera, 40°": the face that a turn brings most towards `up`. The turn is in
-/// the frame of `up`; frame_from_model puts the faces into it, before the turn.
-[[nodiscard]] std::string say_turn(const Eigen::Matrix3d& turn, const Eigen::Matrix3d& frame_from_model,
-                                   const Eigen::Vector3d& up, const ModelFaces& faces);
-
 }  // namespace dubsar

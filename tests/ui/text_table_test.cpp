@@ -59,6 +59,18 @@ TEST(TextTable, TheEnginesWordsAreTranslatedAsFarAsTheyAreKnown) {
   EXPECT_EQ(translated(said, Language::kEnglish), said);
   EXPECT_EQ(translated(said, Language::kGerman),
             "die Rückseite zur Kamera drehen, 90°; dann Drehteller auf 40°, Neigung auf 52°");
+  EXPECT_EQ(
+      translated("turn the reverse towards the camera, 150°, by way of the corner between the left edge and "
+                 "the top edge, and turn it where it lies, 60° clockwise seen from the camera",
+                 Language::kGerman),
+      "die Rückseite zur Kamera drehen, 150°, über die Ecke zwischen linkem Rand und oberem Rand, und "
+      "drehen, wo sie liegt, 60° im Uhrzeigersinn, von der Kamera aus");
+  EXPECT_EQ(
+      translated(
+          "turn it so that the corner between the right edge and the top edge comes towards the camera, "
+          "40°",
+          Language::kGerman),
+      "so drehen, dass die Ecke zwischen rechtem Rand und oberem Rand zur Kamera kommt, 40°");
   Rig rig;
   rig.has_turntable = true;
   rig.tilt_max_rad = 1;

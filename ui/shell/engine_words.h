@@ -21,6 +21,8 @@ struct EnginePhrase {
 /// And of themselves and the options of their addresses; likewise.
 [[nodiscard]] std::span<const EnginePhrase> engine_options();
 
+/// How the tablet is to be turned and pushed, and where an arm goes.
+[[nodiscard]] std::span<const EnginePhrase> engine_turns();
 /// What the engine says of a run, its scans and its wedges.
 [[nodiscard]] std::span<const EnginePhrase> engine_phrases();
 /// Of calibrations and artefacts.

@@ -76,9 +76,9 @@ void replace_each(std::string& text, const Pairs& pairs) {
 const std::vector<EnginePhrase>& engine_sentences() {
   static const std::vector<EnginePhrase> kSorted = [] {
     std::vector<EnginePhrase> all;
-    for (const auto& table : {engine_phrases(), engine_calibration(), engine_remarks(), engine_cameras(),
-                              engine_controllers(), engine_rigs(), engine_drivers(), engine_files(),
-                              engine_shapes(), engine_stored(), engine_packages()}) {
+    for (const auto& table : {engine_turns(), engine_phrases(), engine_calibration(), engine_remarks(),
+                              engine_cameras(), engine_controllers(), engine_rigs(), engine_drivers(),
+                              engine_files(), engine_shapes(), engine_stored(), engine_packages()}) {
       all.insert(all.end(), table.begin(), table.end());
     }
     std::ranges::stable_sort(all, std::ranges::greater(),
