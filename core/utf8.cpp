@@ -49,6 +49,10 @@ CodePoint first_code_point(std::string_view text) {
   return {value, length};
 }
 
+bool is_utf8(std::string_view text) {
+  return as_utf8(text) == text;
+}
+
 std::string as_utf8(std::string_view text) {
   std::string out;
   for_each_code_point(text, [&](std::uint32_t, std::string_view bytes) { out += bytes; });
@@ -67,6 +71,13 @@ std::string one_line(std::string_view text) {
     out += is_control(c) ? std::string_view(" ") : bytes;
   });
   return out;
+}
+
+std::string_view trimmed(std::string_view text) {
+  constexpr std::string_view kBlanks = " \t\r\n";
+  const std::size_t first = text.find_first_not_of(kBlanks);
+  return first == std::string_view::npos ? std::string_view()
+                                         : text.substr(first, text.find_last_not_of(kBlanks) + 1 - first);
 }
 
 }  // namespace dubsar

@@ -25,6 +25,7 @@ struct CodePoint {
   return code_point < 0x20 || (code_point >= 0x7F && code_point < 0xA0);
 }
 
+[[nodiscard]] bool is_utf8(std::string_view text);
 /// The text with U+FFFD for every byte that is no UTF-8.
 [[nodiscard]] std::string as_utf8(std::string_view text);
 
@@ -33,5 +34,8 @@ struct CodePoint {
 [[nodiscard]] bool is_one_line(std::string_view text);
 /// as_utf8() with a blank for every control character.
 [[nodiscard]] std::string one_line(std::string_view text);
+
+/// The text without the blanks around it: what is nothing else says nothing.
+[[nodiscard]] std::string_view trimmed(std::string_view text);
 
 }  // namespace dubsar

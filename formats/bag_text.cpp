@@ -8,6 +8,8 @@
 #include <filesystem>
 #include <set>
 
+#include "core/utf8.h"
+
 namespace dubsar {
 
 namespace {
@@ -30,16 +32,6 @@ std::vector<std::string_view> lines_of(std::string_view text) {
 
 bool is_space(char c) {
   return c == ' ' || c == '\t';
-}
-
-std::string_view trimmed(std::string_view text) {
-  while (!text.empty() && is_space(text.front())) {
-    text.remove_prefix(1);
-  }
-  while (!text.empty() && is_space(text.back())) {
-    text.remove_suffix(1);
-  }
-  return text;
 }
 
 template <class Number>

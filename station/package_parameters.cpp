@@ -13,6 +13,7 @@
 #include "registration/registrar.h"
 #include "station/analysis.h"
 #include "station/package_content.h"
+#include "station/session_wedges.h"
 #include "triangulation/stitcher.h"
 
 namespace dubsar {
@@ -107,13 +108,10 @@ std::vector<ProvenanceValue> analysis_parameters(const PackageContent& content) 
 }
 
 std::string analysis_note(const WedgeFile& wedges) {
-  std::string note = wedges.exits == ExitDefinition::kSurface ? "Inner edges end at the free surface."
+  const std::string note = wedges.exits == ExitDefinition::kSurface ? "Inner edges end at the free surface."
                                                               : "Inner edges end where they are seen to.";
-  if (wedges.corrections > 0) {
-    note += fmt::format(" A person has corrected what was found: {} corrections, {} of which could be made.",
-                        wedges.corrections, wedges.corrections - wedges.lost.size());
-  }
-  return note;
+  const std::string by_hand = correction_sentence(wedges);
+  return by_hand.empty() ? note : note + " " + by_hand;
 }
 
 }  // namespace dubsar

@@ -193,9 +193,19 @@ std::optional<WedgeFile> stored_wedges(const SessionStore& store, const Mesh& me
   return wedges ? std::optional(std::move(*wedges)) : std::nullopt;
 }
 
+std::string correction_sentence(const WedgeFile& file) {
+  if (file.corrections == 0) {
+    return {};
+  }
+  const std::size_t made = file.corrections - std::min(file.corrections, file.lost.size());
+  const std::string all = fmt::format("A person has corrected what was found: {} correction{} {} made", made,
+                                      made == 1 ? "" : "s", made == 1 ? "was" : "were");
+  return file.lost.empty() ? all + "." : fmt::format("{}, and {} more could not be.", all, file.lost.size());
+}
+
 SessionWedges counts_of(const WedgeFile& file, fs::path json) {
-  SessionWedges out{
-      std::move(json), file.wedges.size(), file.rejected.size(), {}, make_read_profiles(file.wedges)};
+  SessionWedges out{std::move(json),           file.wedges.size(), file.rejected.size(),
+                    correction_sentence(file), {},                 make_read_profiles(file.wedges)};
   for (Error& doubt : doubts_of(file, {})) {
     out.doubts.push_back(std::move(doubt.what));
   }
@@ -210,6 +220,9 @@ std::string wedge_sentence(const SessionWedges& wedges, const std::string& where
                 "{} wedges were measured, {} hollows were rejected: {} has every angle, the drawings "
                 "beside it every wedge. Wedge measurement was tested on simulated tablets only.",
                 wedges.count, wedges.rejected, where);
+  if (!wedges.by_hand.empty()) {
+    sentence += " " + wedges.by_hand;
+  }
   for (const std::string& doubt : wedges.doubts) {
     sentence += " Take care: " + doubt + ".";
   }

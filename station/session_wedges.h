@@ -22,6 +22,7 @@ struct SessionWedges {
   std::filesystem::path json;  ///< analysis/wedges.json; a drawing of each written side lies beside it
   std::size_t count = 0;
   std::size_t rejected = 0;
+  std::string by_hand;                 ///< correction_sentence()
   std::vector<std::string> doubts;     ///< doubts_of(), sentences without their mends
   std::vector<WedgeProfile> profiles;  ///< make_read_profiles()
 };
@@ -56,6 +57,10 @@ enum class KeptWedges {
 /// Those that were measured as now, when their file is as it was stored; nothing otherwise.
 [[nodiscard]] std::optional<WedgeFile> stored_wedges(const SessionStore& store, const Mesh& mesh,
                                                      const JobContext& job);
+
+/// "A person has corrected what was found: 3 corrections were made, and 1 more could not be." Empty where
+/// nobody has.
+[[nodiscard]] std::string correction_sentence(const WedgeFile& file);
 
 /// What is told of the wedges of this file, which `json` leads to.
 [[nodiscard]] SessionWedges counts_of(const WedgeFile& file, std::filesystem::path json);

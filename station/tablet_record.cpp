@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "core/utf8.h"
 #include "formats/json_node.h"
 #include "formats/json_text.h"
 
@@ -16,11 +17,15 @@ constexpr const char* kDocument = "tablet";
 constexpr std::size_t kMostBytesOfALine = 1000, kMostBytesOfNotes = 100'000;
 
 /// What heads pages, names files and is printed everywhere is no place for a text.
-Status check_lengths(const TabletRecord& record) {
+Status check_texts(const TabletRecord& record) {
   for (const auto& [what, text] :
        {std::pair{"the museum number", &record.museum_number},
         std::pair{"the collection", &record.collection}, std::pair{"the operator", &record.operator_name},
         std::pair{"the rights", &record.rights}, std::pair{"the notes", &record.notes}}) {
+    if (!is_utf8(*text)) {
+      return fail(ErrorKind::kUsage, "it has bytes that are no UTF-8", what,
+                  "set the terminal to UTF-8, and say it again");
+    }
     if (text == &record.notes && text->size() > kMostBytesOfNotes) {
       return fail(ErrorKind::kUsage, "more than 100 000 bytes", what, "say less");
     }
@@ -73,7 +78,7 @@ Result<TabletRecord> parse_tablet_record(std::string_view text, const std::strin
   TabletRecord record;
   const auto take = [&](const char* key, std::string& into) {
     if (const auto node = document->root().find(key)) {
-      into = node->text();
+      into = trimmed(node->text());
     }
   };
   take("museum_number", record.museum_number);
@@ -88,11 +93,17 @@ Result<TabletRecord> parse_tablet_record(std::string_view text, const std::strin
   return record;
 }
 
-Status keep_tablet_record(SessionStore& store, const TabletRecord& record) {
+Status keep_tablet_record(SessionStore& store, const TabletRecord& said) {
+  TabletRecord record = said;
+  for (const auto field :
+       {&TabletRecord::museum_number, &TabletRecord::cdli, &TabletRecord::collection,
+        &TabletRecord::operator_name, &TabletRecord::rights, &TabletRecord::notes}) {
+    record.*field = std::string(trimmed(record.*field));
+  }
   if (const Status checked = check_cdli(record.cdli); !checked) {
     return checked;
   }
-  if (const Status fits = check_lengths(record); !fits) {
+  if (const Status fits = check_texts(record); !fits) {
     return fits;
   }
   const bool says_more = record != tablet_record_of(store);

@@ -43,6 +43,16 @@ template <class T>
       "NONNEGATIVE");
 }
 
+/// Text that is shown and kept: what is no UTF-8 would be kept as question marks.
+[[nodiscard]] inline CLI::Validator readable() {
+  return CLI::Validator(
+      [](std::string& text) {
+        return is_utf8(text) ? std::string()
+                             : std::string("has bytes that are no UTF-8; set the terminal to UTF-8");
+      },
+      "");
+}
+
 /// Text of one line: a name or a reason. Lists show many of them, and a terminal obeys control characters.
 [[nodiscard]] inline CLI::Validator single_line() {
   return CLI::Validator(

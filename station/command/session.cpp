@@ -212,6 +212,7 @@ Result<int> describe(const std::string& path, const std::vector<DescribedField>&
   if (const Status kept = keep_tablet_record(*store, record); !kept) {
     return std::unexpected(kept.error());
   }
+  record = tablet_record_of(*store);
   if (const Status followed = pages_follow_record(*store, context.job); !followed) {
     return std::unexpected(followed.error());
   }

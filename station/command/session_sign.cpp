@@ -75,16 +75,17 @@ void add_session_sign(CLI::App& session, Action& chosen) {
   const auto arguments = std::make_shared<SignArguments>();
   const auto said = CLI::Validator(
       [](std::string& text) {
-        return text.find_first_not_of(" \t\r\n") == std::string::npos ? "says nothing" : std::string();
+        return trimmed(text).empty() ? "says nothing" : std::string();
       },
       "TEXT");
   verb->add_option("session", arguments->path, "a session folder")->required();
-  verb->add_option("--name", arguments->name, "who signs")->required()->check(said)->check(single_line());
-  verb->add_option("--role", arguments->role, "as what")->check(single_line());
-  verb->add_option("--note", arguments->note, "anything that a reader should know");
+  verb->add_option("--name", arguments->name, "who signs")->required()->check(said)->check(single_line())->check(readable());
+  verb->add_option("--role", arguments->role, "as what")->check(single_line())->check(readable());
+  verb->add_option("--note", arguments->note, "anything that a reader should know")->check(readable());
   verb->add_option("--incomplete", arguments->incomplete, "sign although it falls short, and why")
       ->check(said)
-      ->check(single_line());
+      ->check(single_line())
+      ->check(readable());
   verb->fallthrough();
   verb->callback(
       [&chosen, arguments] { chosen = [arguments](CommandContext& c) { return sign(*arguments, c); }; });

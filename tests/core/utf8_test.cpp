@@ -15,6 +15,18 @@ TEST(Utf8, BytesThatAreNoneAreReplacedAndAllElseStays) {
   EXPECT_EQ(as_utf8(""), "");
 }
 
+TEST(Utf8, WhatIsNoneIsKnown) {
+  EXPECT_TRUE(is_utf8(""));
+  EXPECT_TRUE(is_utf8("J\xC3\xB6rg \xEF\xBF\xBD"));
+  EXPECT_FALSE(is_utf8("J\xF6rg"));
+}
+
+TEST(Utf8, BlanksAroundATextAreNoPartOfIt) {
+  EXPECT_EQ(trimmed(" \tBM 1\r\n"), "BM 1");
+  EXPECT_EQ(trimmed(" \n"), "");
+  EXPECT_EQ(trimmed(""), "");
+}
+
 TEST(Utf8, ControlCharactersAreNoPartOfALine) {
   for (const char* text : {"two\nlines", "a\tb", "\x1B[2J", "\x7F",
                            "\xC2\x9B"

@@ -283,7 +283,7 @@ TEST_F(ExportOfWedges, CorrectionsOfTheSessionAreMadeAndCounted) {
   EXPECT_EQ(left->wedges[3].depth_point_mm, found[4].depth_point_mm);
   EXPECT_EQ(run_command({"verify", at("corrected_bag")}).status, 0);
   EXPECT_THAT(bytes_of(at("corrected_bag") / "data/provenance.jsonld"),
-              HasSubstr("A person has corrected what was found: 1 corrections, 1 of which could be made."));
+              HasSubstr("A person has corrected what was found: 1 correction was made."));
 }
 
 }  // namespace

@@ -96,10 +96,16 @@ TEST(KeptSurface, OfWedgesThatAreKeptPagesTellWhatTheyToldWhenTheyWereMeasured) 
   EXPECT_EQ(facts.wedge_profiles.front().known[0], 6);
   EXPECT_EQ(facts.wedge_profiles.front().known[5], 5) << "angles of those that are whole";
 
+  EXPECT_THAT(facts.wedges, Not(HasSubstr("A person"))) << "nobody has";
+
   file.text_certainty = 0;
+  file.corrections = 3;
+  file.lost = {{1, "no wedge lies there any more"}};
   keep(store, mesh, file);
   tell_kept_wedges(facts, store, mesh, {});
   EXPECT_THAT(facts.wedges, HasSubstr("Take care: no direction of writing shows"));
+  EXPECT_THAT(facts.wedges, HasSubstr("A person has corrected what was found: 2 corrections were made, and 1 "
+                                      "more could not be."));
 
   // What was measured otherwise is none of the other mesh.
   nlohmann::json noted = nlohmann::json::parse(store.load_document("wedges").value().value());

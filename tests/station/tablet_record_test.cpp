@@ -38,6 +38,36 @@ TEST(TabletRecord, WhatHeadsPagesAndNamesFilesIsNoText) {
   EXPECT_FALSE(keep_tablet_record(*store, record));
 }
 
+TEST(TabletRecord, BlanksSayNothing) {
+  const test::TemporaryFolder folder;
+  Result<SessionStore> store = SessionStore::open_or_create(folder.path() / "session");
+  ASSERT_TRUE(store) << store.error().line();
+  TabletRecord record;
+  record.museum_number = " BM 1\t";
+  record.rights = "  ";
+  ASSERT_TRUE(keep_tablet_record(*store, record));
+  EXPECT_EQ(tablet_record_of(*store).museum_number, "BM 1");
+  EXPECT_EQ(tablet_record_of(*store).rights, "");
+  // As an earlier version kept it.
+  ASSERT_TRUE(store->save_document("tablet", tablet_record_to_json(record)));
+  EXPECT_EQ(tablet_record_of(*store).rights, "");
+  EXPECT_EQ(words_of(tablet_record_of(*store)).size(), 1U);
+}
+
+TEST(TabletRecord, WhatIsNoUtf8IsRefusedAndNotKeptAsQuestionMarks) {
+  const test::TemporaryFolder folder;
+  Result<SessionStore> store = SessionStore::open_or_create(folder.path() / "session");
+  ASSERT_TRUE(store) << store.error().line();
+  TabletRecord record;
+  record.operator_name = "J\xF6rg";
+  const Status kept = keep_tablet_record(*store, record);
+  ASSERT_FALSE(kept);
+  EXPECT_EQ(kept.error().line(),
+            "the operator: it has bytes that are no UTF-8; set the terminal to UTF-8, and say it again");
+  record.operator_name = "J\xC3\xB6rg";
+  EXPECT_TRUE(keep_tablet_record(*store, record));
+}
+
 TEST(TabletRecord, WhatWasSaidBeforeStaysInTheRecord) {
   const test::TemporaryFolder folder;
   Result<SessionStore> store = SessionStore::open_or_create(folder.path() / "session");

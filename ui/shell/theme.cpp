@@ -14,6 +14,7 @@
 #include <system_error>
 #include <utility>
 
+#include "core/utf8.h"
 #include "station/settings_file.h"
 
 namespace dubsar::ui {
@@ -25,12 +26,6 @@ namespace fs = std::filesystem;
 constexpr std::array<const char*, 3> kFontFiles{"/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf",
                                                 "/usr/share/fonts/dejavu/DejaVuSans.ttf",
                                                 "/usr/share/fonts/TTF/DejaVuSans.ttf"};
-
-std::string trimmed(const std::string& text) {
-  const auto first = text.find_first_not_of(" \t\r");
-  const auto last = text.find_last_not_of(" \t\r");
-  return first == std::string::npos ? std::string() : text.substr(first, last - first + 1);
-}
 
 ImVec4 im(const Eigen::Vector4f& c) {
   return {c.x(), c.y(), c.z(), c.w()};
@@ -65,8 +60,8 @@ Preferences read_preferences(const fs::path& file, Preferences usual) {
     if (mark == std::string::npos) {
       continue;
     }
-    const std::string key = trimmed(line.substr(0, mark));
-    const std::string value = trimmed(line.substr(mark + 1));
+    const std::string key(trimmed(line.substr(0, mark)));
+    const std::string value(trimmed(line.substr(mark + 1)));
     if (key == "language") {
       out.language = language_of(value).value_or(out.language);
     } else if (key == "dark") {
