@@ -15,8 +15,10 @@
 #include "core/units.h"
 #include "formats/atomic_file.h"
 #include "formats/file_label_reader.h"
+#include "formats/mesh_formats.h"
 #include "formats/mesh_io.h"
 #include "formats/mesh_losses.h"
+#include "formats/ply_of_unknown_unit.h"
 #include "formats/wedges_json.h"
 #include "station/command/command.h"
 #include "station/command/outputs.h"
@@ -65,14 +67,15 @@ nlohmann::ordered_json words_of(const std::optional<Error>& doubt) {
 }
 
 /// As the viewer has it, in which selections are made: where nobody said the unit, in the one that its size
-/// tells.
+/// tells. `unit_known`: whether it tells one.
 Result<Mesh> read_as_viewed(const MeshOptions& options, const CommandContext& context,
-                            std::vector<std::string>* passed_over) {
+                            std::vector<std::string>* passed_over, bool* unit_known) {
   Result<Mesh> mesh = read(options, context, passed_over);
   if (!mesh || !doubt_unit(options, *mesh)) {
     return mesh;
   }
   const Result<UnitBySize> told = unit_by_size(*mesh, options.in);
+  *unit_known = told.has_value();
   if (!told || told->taken_for.empty()) {
     return mesh;
   }
@@ -82,11 +85,15 @@ Result<Mesh> read_as_viewed(const MeshOptions& options, const CommandContext& co
   return read(taken, context, passed_over);
 }
 
-/// With what the file that was read says of itself, and a word on what the new one cannot hold.
+/// With what the file that was read says of itself, and a word on what the new one cannot hold. Where nobody
+/// knows the unit a PLY does not say that it is one of millimetres.
 Status write(const MeshOptions& options, const CommandContext& context, const Mesh& mesh,
-             const std::vector<std::string>& passed_over) {
-  if (const Status written = write_mesh(options.out, mesh, read_mesh_label(options.in), &context.job);
-      !written) {
+             const std::vector<std::string>& passed_over, bool unit_known) {
+  const FileLabel label = read_mesh_label(options.in);
+  const Status written = unit_known || format_of(options.out) != MeshFormat::kPly
+                             ? write_mesh(options.out, mesh, label, &context.job)
+                             : write_ply_of_unknown_unit(options.out, mesh, label);
+  if (!written) {
     return written;
   }
   if (const std::optional<Error> lost = mesh_losses(mesh, options.out, "keep " + options.in, passed_over)) {
@@ -137,7 +144,8 @@ Result<int> convert(const MeshOptions& options, CommandContext& context) {
     }
     log_warning(fault->line());
   }
-  if (const Status written = write(options, context, *mesh, passed_over); !written) {
+  const bool unit_known = !doubt_unit(options, *mesh);
+  if (const Status written = write(options, context, *mesh, passed_over, unit_known); !written) {
     return std::unexpected(written.error());
   }
   const LeftOut out = left_out_of(*mesh, options.out);
@@ -205,7 +213,8 @@ Result<int> section(const MeshOptions& options, CommandContext& context) {
 /// What a selection of the viewer holds: a mesh, or a table of its wedges.
 Result<int> part(const MeshOptions& options, CommandContext& context) {
   std::vector<std::string> passed_over;
-  const Result<Mesh> mesh = read_as_viewed(options, context, &passed_over);
+  bool unit_known = true;
+  const Result<Mesh> mesh = read_as_viewed(options, context, &passed_over, &unit_known);
   if (!mesh) {
     return std::unexpected(mesh.error());
   }
@@ -242,7 +251,7 @@ Result<int> part(const MeshOptions& options, CommandContext& context) {
     return wedges.empty() ? 1 : 0;
   }
   const Mesh out = part_of(*mesh, *selection);
-  if (const Status written = write(options, context, out, passed_over); !written) {
+  if (const Status written = write(options, context, out, passed_over, unit_known); !written) {
     return std::unexpected(written.error());
   }
   if (context.json) {

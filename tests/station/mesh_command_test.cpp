@@ -30,6 +30,7 @@ using test::Outcome;
 using test::run_command;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
+using ::testing::Not;
 using ::testing::SizeIs;
 
 constexpr const char* kCorners = "v 0 0 0\nv 30 0 0\nv 30 30 0\nv 0 30 0\nv 15 15 9\n";
@@ -204,6 +205,21 @@ TEST_F(MeshCommand, AUnitThatNobodySaidIsDoubtedWhereLengthsAreTold) {
   EXPECT_THAT(said.complaints(), SizeIs(0)) << said.err;
   EXPECT_EQ(said.json()["unit_doubt"], nullptr);
   EXPECT_EQ(cut("tent.obj", "0,15,10", "30,15,10", "cut.csv").json()["unit_doubt"], nullptr);
+}
+
+TEST_F(MeshCommand, APlyDoesNotSayMillimetresOfNumbersThatNobodyKnows) {
+  std::ofstream(at("metres.obj")) << "v 0 0 0\nv .03 0 0\nv .03 .03 0\nv 0 .03 0\nv .015 .015 .009\n"
+                                     "f 1 2 5\nf 2 3 5\nf 3 4 5\nf 4 1 5\nf 1 3 2\nf 1 4 3\n";
+  const Outcome plain = run_command({"mesh", "convert", at("metres.obj"), at("unknown.ply")});
+  EXPECT_EQ(plain.status, 0) << plain.err;
+  EXPECT_THAT(plain.err, HasSubstr("perhaps its numbers are m"));
+  EXPECT_THAT(bytes_of(at("unknown.ply")), Not(HasSubstr("obj_info unit")));
+  EXPECT_THAT(run_command({"mesh", "check", at("unknown.ply")}).err, HasSubstr("perhaps its numbers are m"));
+  const Outcome said = run_command({"mesh", "convert", at("metres.obj"), at("said.ply"), "--unit", "m"});
+  EXPECT_THAT(said.complaints(), SizeIs(0)) << said.err;
+  EXPECT_THAT(bytes_of(at("said.ply")), HasSubstr("obj_info unit mm"));
+  run_command({"mesh", "convert", at("tent.obj"), at("tent.ply")});
+  EXPECT_THAT(bytes_of(at("tent.ply")), HasSubstr("obj_info unit mm")) << "its size is a tablet's";
 }
 
 TEST_F(MeshCommand, ACutThatMeetsNothingWritesNothing) {
