@@ -4,8 +4,10 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <set>
+#include <string>
 #include <utility>
 
 #include "planning/clusters.h"
@@ -17,6 +19,8 @@ namespace {
 /// How deep laser and camera see into a hole, in its widths: they stand 15° apart at least.
 constexpr double kDeepestInWidths = 4.0;
 constexpr double kSecondBodyShare = 0.02;  ///< of the elements of the largest part
+/// What was seen of a piece that somebody may want to know of: a chip of 4 x 4 mm. Less is left of pins.
+constexpr double kChipMm2 = 15.0;
 
 /// A hole of the cover, or a patch of red.
 struct Opening {
@@ -118,6 +122,18 @@ class Pieces {
     return pieces;
   }
 
+  /// How much well-sampled surface each piece has that is not in `clay`.
+  [[nodiscard]] std::map<std::uint32_t, double> seen_mm2(const std::set<std::uint32_t>& clay) {
+    std::map<std::uint32_t, double> out;
+    for (const auto& e : cover_.elements()) {
+      if (e.part != 0 && !clay.contains(of_part(e.part))) {
+        const double cell_mm = cover_.cell_mm_at(e.position_mm.cast<double>());
+        out[of_part(e.part)] += cell_mm * cell_mm;
+      }
+    }
+    return out;
+  }
+
   /// The largest, and those that may be a second body.
   [[nodiscard]] std::set<std::uint32_t> large() {
     std::vector<std::size_t> elements(parts_, 0);
@@ -178,10 +194,21 @@ std::vector<std::uint8_t> excuse_apart(std::span<const PlacedScan> scans, const 
   }
   Pieces pieces(scans, cover, red);
   const std::set<std::uint32_t> clay = clay_of(pieces);
+  const std::map<std::uint32_t, double> seen_mm2 = pieces.seen_mm2(clay);
   for (const auto& patch : pieces.patches()) {
     for (const std::uint32_t i : patch) {
-      if (!clay.contains(pieces.of_target(i))) {
+      const std::uint32_t piece = pieces.of_target(i);
+      if (clay.contains(piece)) {
+        continue;
+      }
+      const auto seen = seen_mm2.find(piece);
+      if (seen == seen_mm2.end() || seen->second < kChipMm2) {
         red.targets[i].excuse_as_stray();
+      } else {
+        red.targets[i].excuse_as(Excuse::kUnneeded,
+                                 "it hangs apart from the surface, which is closed there: about " +
+                                     std::to_string(std::lround(seen->second)) +
+                                     " mm2 of it were seen; a chip is scanned by itself");
       }
     }
   }

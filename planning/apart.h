@@ -13,7 +13,7 @@
 namespace dubsar {
 
 /// Excuses the red of what hangs apart from the tablet (unneeded, with no area): what the mask left of a
-/// pin's arm, a thread. A solid has one closed surface, so that clay which no well-sampled surface joins to
+/// pin's arm, a thread. Of a piece as large as a chip the area and the size are told. A solid has one closed surface, so that clay which no well-sampled surface joins to
 /// the rest is joined to it through a hole. A piece (well-sampled surface and the red samples beside it) that
 /// lies farther from every hole than laser and camera see into one as wide is no clay. Holes are those of the
 /// cover and the places that red samples mark; a piece that lies near one counts as clay, and its own holes

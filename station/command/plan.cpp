@@ -220,7 +220,7 @@ void print_map(const RedMap& map) {
                 region.reason.empty() ? "" : ": ", region.reason.c_str());
   }
   if (strays > 0) {
-    std::printf("  %d groups of stray returns, where no clay is missing\n", strays);
+    std::printf("  %d group%s of stray returns, where no clay is missing\n", strays, strays == 1 ? "" : "s");
   }
   for (const GroupApart& group : map.apart) {
     std::printf("  apart: %s\n", group.say.c_str());

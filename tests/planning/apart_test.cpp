@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "planning/red_map.h"
@@ -185,6 +186,34 @@ TEST(Apart, ASecondBodyIsNoStray) {
     second += target.state == RegionState::kRed && target.sample_mm.x() > 40 ? 1 : 0;
   }
   EXPECT_GT(second, 20);
+}
+
+TEST(Apart, AChipBesideTheTabletIsToldWithItsSize) {
+  Session session;
+  scan_all_sides(session);
+  RigidTransform beside = turned(0, 0);
+  beside.translation_mm.x() = -140;
+  add(strip({-3, -3}, {3, 3}, 0), beside, session);
+  const auto scans = session.map.scans();
+  const SurfaceCover cover(scans);
+  ASSERT_EQ(cover.parts().size(), 2U);
+  ASSERT_LT(50 * cover.parts()[1], cover.parts()[0]) << "else it counted as a second body";
+  RedTargets red = red_targets(scans, model_surface(scans));
+  (void)excuse_apart(scans, cover, red);
+  double of_chip_mm2 = 0;
+  double seen_mm2 = 0;
+  for (const RedTarget& target : red.targets) {
+    if (!target.unseen && target.sample_mm.x() < -130) {
+      EXPECT_EQ(target.state, RegionState::kExcused);
+      EXPECT_FALSE(is_stray(target));
+      const std::string before = "which is closed there: about ";
+      ASSERT_NE(target.reason.find(before), std::string::npos) << target.reason;
+      seen_mm2 = std::stod(target.reason.substr(target.reason.find(before) + before.size()));
+      of_chip_mm2 += target.area_mm2;
+    }
+  }
+  EXPECT_GT(of_chip_mm2, 1);
+  EXPECT_NEAR(seen_mm2, 36, 12);
 }
 
 }  // namespace
