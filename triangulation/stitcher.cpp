@@ -144,7 +144,9 @@ struct Stitcher::Impl {
     for (FoundPairs& pairs : all) {
       Entry& other = entries.at(pairs.other);
       other.mark_changed(pairs.back);
-      (key < pairs.other ? entry.steps[pairs.other] : other.steps[key]) = pairs.step;
+      if (pairs.other.first != key.first) {  // passes of one scan are held by each other, not by a pose
+        (key < pairs.other ? entry.steps[pairs.other] : other.steps[key]) = pairs.step;
+      }
       entry.pairs.emplace(pairs.other, std::move(pairs.there));
       other.pairs.emplace(key, std::move(pairs.back));
     }
