@@ -51,7 +51,8 @@ void excuse_specks(std::span<const PlacedScan> scans, const SurfaceCover& cover,
                    const ExcuseOptions& options, RedTargets& red);
 
 /// Unneeded: what is left when all of it together is below speck_budget of the surface, no view is expected
-/// to clear as much as a single speck, and what hangs together is no larger than largest_slit_mm2.
+/// to clear as much as a single speck, and what hangs together is no larger than largest_slit_mm2. What gives
+/// no signal does not count, and stays red with all that hangs together with it.
 void excuse_last_specks(std::span<const PlacedScan> scans, const SurfaceCover& cover, double best_gain_mm2,
                         double surface_mm2, const ExcuseOptions& options, RedTargets& red);
 

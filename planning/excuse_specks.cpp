@@ -268,8 +268,10 @@ void excuse_last_specks(std::span<const PlacedScan> scans, const SurfaceCover& c
     return;
   }
   for (const auto& group : cluster_targets(red, scans, red.cell_mm, kAcrossGapsMm, true)) {
+    // Of what gives no signal a part may be left that is small: a person has to look at it all the same.
     if (red.targets[group.front()].state != RegionState::kRed ||
-        area_of(group, red) > options.largest_slit_mm2) {
+        area_of(group, red) > options.largest_slit_mm2 ||
+        std::ranges::any_of(group, [&](std::uint32_t i) { return red.targets[i].no_signal; })) {
       continue;
     }
     for (const std::uint32_t i : group) {

@@ -283,6 +283,23 @@ TEST(RedMap, ALastSpeckIsNoLargerThanHalfAWedge) {
   EXPECT_EQ(red.targets[1].state, RegionState::kRed);
 }
 
+TEST(RedMap, WhatGivesNoSignalIsNoLastSpeck) {
+  Session session;
+  session.scan(turned(0, 0));
+  RedTargets red;
+  red.cell_mm = 0.75;
+  for (const double x : {-5.0, 5.0}) {
+    RedTarget& target = red.targets.emplace_back();
+    target.position_mm = target.sample_mm = {x, 0, 4.6};
+    target.area_mm2 = 0.3;
+    target.no_signal = x < 0;
+  }
+  constexpr double kSurfaceMm2 = 1e6;
+  excuse_last_specks(session.map.scans(), SurfaceCover(session.map.scans()), 0.0, kSurfaceMm2, {}, red);
+  EXPECT_EQ(red.targets[0].state, RegionState::kRed);
+  EXPECT_EQ(red.targets[1].excuse, Excuse::kUnneeded);
+}
+
 TEST(RedMap, BehindAClosedSurfaceNothingIsMissing) {
   const auto left = [](bool is_closed, bool has_rim) {
     RedTargets red;
