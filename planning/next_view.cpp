@@ -184,6 +184,7 @@ Result<NextViews> next_views(std::span<const ViewCandidate> candidates, const Sc
     float left = 0;  ///< looks in vain considered
   };
   std::vector<double> gain(candidates.size(), 0.0);
+  std::vector<double> promised(candidates.size(), 0.0);  // by the looks that certainly were in vain
   std::vector<Chance> chance(candidates.size() * red.size());
   parallel_for_each_index(
       candidates.size(),
@@ -197,6 +198,7 @@ Result<NextViews> next_views(std::span<const ViewCandidate> candidates, const Sc
           if (p > 0) {
             const double left = p * novelty(t.tried, views[c].towards_scanner());
             chance[c * red.size() + k] = {static_cast<float>(p), static_cast<float>(left)};
+            promised[c] += share * t.area_mm2 * left;
             gain[c] += share * t.area_mm2 * p * left_of(t, views[c].towards_scanner());
           }
         }
@@ -226,8 +228,8 @@ Result<NextViews> next_views(std::span<const ViewCandidate> candidates, const Sc
     return fail(ErrorKind::kCancelled, "planning was stopped");
   }
   const auto predicted_mm2 = [&](std::size_t c) { return std::min(all_area, kSpill * gain[c]); };
-  for (std::size_t c = 0; c < candidates.size(); ++c) {
-    out.best_gain_mm2 = std::max(out.best_gain_mm2, predicted_mm2(c));
+  for (const double mm2 : promised) {
+    out.best_gain_mm2 = std::max(out.best_gain_mm2, std::min(all_area, kSpill * mm2));
   }
   const auto propose = [&](std::size_t c) {
     out.ranked.push_back(

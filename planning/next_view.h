@@ -27,7 +27,8 @@ struct NextViewOptions {
 /// What to do next, and what all candidates together promise: best_chance is the greatest over all of them.
 struct NextViews {
   std::vector<NextView> ranked;  ///< best first
-  /// Greatest red area that any candidate is expected to clear, whether it is proposed or not.
+  /// Greatest red area that any candidate is expected to clear, whether it is proposed or not: what is
+  /// excused rests on it, so scans that perhaps looked at a place (RedTarget::perhaps) take nothing from it.
   double best_gain_mm2 = 0;
   std::vector<float> best_chance;  ///< [targets]; -1 for targets that are not red, or given up
   std::vector<float> best_left;    ///< the same, looks in vain considered

@@ -208,6 +208,15 @@ TEST(VainLook, AViewThatWasTakenForNothingIsNotAdvisedAgain) {
   EXPECT_EQ(targets[0].perhaps.size(), 1U);
   EXPECT_GT(before, 0.5);
   EXPECT_LT(clearing_chances(same, scanner, surface, targets)[0], 0.5 * before);
+  // What the last specks are excused by is as if it had not been taken.
+  JobContext job;
+  const auto best_gain_mm2 = [&](std::vector<VainLook> perhaps) {
+    targets[0].perhaps = std::move(perhaps);
+    return next_views({&same, 1}, scanner, surface, targets, {}, job).value().best_gain_mm2;
+  };
+  const std::vector<VainLook> noted = targets[0].perhaps;
+  EXPECT_GT(best_gain_mm2({}), 0.5);
+  EXPECT_EQ(best_gain_mm2(noted), best_gain_mm2({}));
 }
 
 }  // namespace
