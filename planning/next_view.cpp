@@ -95,6 +95,16 @@ double overlap_of(const ViewPredictor& view, const ModelSurface& surface) {
   return seen > 0 ? seen / (seen + unseen) : 0.0;
 }
 
+/// As the scan was taken, with its own spacing and laser and camera where they stood; in the field that new
+/// views are supposed to have.
+ScannerModel scanner_of(const RangeGrid& grid, const Rig* rig, double noise_mm) {
+  ScannerModel scanner = ScannerModel::of(grid, noise_mm);
+  if (rig != nullptr) {
+    scanner.field_mm = ScannerModel::of(*rig, noise_mm).field_mm;
+  }
+  return scanner;
+}
+
 /// What a further look is worth: a view that was taken for nothing is not advised again, whether or not that
 /// is enough to excuse the place.
 double left_of(const RedTarget& target, const Eigen::Vector3d& towards_scanner) {
@@ -110,9 +120,8 @@ void note_tries(std::span<const PlacedScan> scans, const Rig* rig, std::span<con
   views.reserve(scans.size());
   for (std::size_t s = 0; s < scans.size(); ++s) {
     const RangeGrid& grid = *scans[s].grid;
-    views.emplace_back(
-        rig != nullptr ? ScannerModel::of(*rig, noise_mm[s]) : ScannerModel::of(grid, noise_mm[s]),
-        scans[s].model_from_scanner, surface.query, clearance_of(surface));
+    views.emplace_back(scanner_of(grid, rig, noise_mm[s]), scans[s].model_from_scanner, surface.query,
+                       clearance_of(surface));
     fields.push_back(ScannerModel::that_took(grid, rig, noise_mm[s]).field_mm);
   }
   parallel_for_each_index(

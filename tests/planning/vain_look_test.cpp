@@ -190,6 +190,20 @@ TEST(VainLook, WhatIsThinnedOutIsJudgedToo) {
   EXPECT_GE(views.best_chance[4], 0.05F);
 }
 
+/// A rig tells where laser and camera stand at a grid's middle row, and where they stand now.
+TEST(VainLook, AScanLookedFromWhereItsOwnLaserStood) {
+  Session session;
+  session.scan(turned(0, 0));
+  const auto scans = session.map.scans();
+  Rig rig = turntable_rig();
+  rig.view.laser_mm = Eigen::Vector3d(250, 0, 0);
+  const double noise_mm[] = {0.02};
+  std::vector<RedTarget> targets(1);
+  targets[0].position_mm = targets[0].sample_mm = {0, 0, 5.5};
+  note_tries(scans, &rig, noise_mm, model_surface(scans), targets);
+  EXPECT_EQ(targets[0].tried.size(), 1U);
+}
+
 /// Whether or not it looked so far: where no rig is known a new view is supposed to.
 TEST(VainLook, AViewThatWasTakenForNothingIsNotAdvisedAgain) {
   Session session;
