@@ -151,18 +151,30 @@ void Averager::write_average(const Course& course, std::size_t at, FusedSamples&
   const std::size_t i = course.sample;
   float shift_sum = 0;
   float weight_sum = own_weight(i);
-  float doubt = 1.0F - from_.reliability(i);
+  float best = from_.reliability(i);  // of a scan's passes: they look from one place
+  for (const auto& [k, q] : found_) {
+    best = others_[k]->id == from_.id ? std::max(best, q.reliability) : best;
+  }
+  float doubt = 1.0F - best;
+  float doubt_before = doubt;  // without the scan whose passes come
   bool sparse = from_.is_sparse(i);
   std::size_t scans = 1;
   int last = from_.id;
   for (const auto& [k, q] : found_) {
     const int id = others_[k]->id;
-    scans += id != last && id != from_.id ? 1 : 0;  // passes of one scan follow each other
+    if (id != last && id != from_.id) {  // passes of one scan follow each other
+      ++scans;
+      doubt_before = doubt;
+      best = 0;
+    }
+    if (id != from_.id) {
+      best = std::max(best, q.reliability);
+      doubt = doubt_before * (1.0F - best);
+    }
     last = id;
     const float weight = weight_of(k, q);
     shift_sum += weight * q.along_mm;
     weight_sum += weight;
-    doubt *= 1.0F - q.reliability;
     sparse = sparse && !q.well_sampled;
   }
   const float shift_mm = shift_sum / weight_sum;

@@ -22,8 +22,8 @@ struct FusedSamples {
   std::vector<std::uint32_t> slot;      ///< [rows*cols], index into the arrays below, or kNone
   std::vector<std::uint32_t> samples;   ///< index of the sample in the grid
   std::vector<Eigen::Vector3f> points;  ///< model frame
-  /// (1 - Π(1 - r) over the supporting scans) / (1 + (sigma / µ)²); less where scans had to be taken
-  /// elsewhere than their poses say
+  /// (1 - Π(1 - r) over the supporting scans, of the passes of one the best) / (1 + (sigma / µ)²); less where
+  /// scans had to be taken elsewhere than their poses say
   std::vector<float> reliability;
   /// Standard deviation along the normal, mm: of noise and poses, as far as averaging leaves them, and of
   /// triangles that lie off bent clay; more where the scans disagree by more.

@@ -151,6 +151,22 @@ TEST(RepeatedRows, APoseIsNoBetterForBeingUsedTwice) {
   EXPECT_NEAR(b.sigma_mm[b.sigma_mm.size() / 2], a.sigma_mm[a.sigma_mm.size() / 2], 0.005);
 }
 
+TEST(RepeatedRows, AScanIsNoMoreReliableForItsPasses) {
+  const auto mean_reliability = [](const Places& places) {
+    test::ScanSet set;
+    set.add(rows_at(places, 0), {});
+    const Mesh mesh = stitched(set);
+    double sum = 0;
+    for (const float reliability : mesh.reliability) {
+      sum += static_cast<double>(reliability);
+    }
+    return sum / static_cast<double>(mesh.reliability.size());
+  };
+  const double once = mean_reliability(run(0, kLastRow));
+  ASSERT_LT(once, 0.95);
+  EXPECT_NEAR(mean_reliability(each_twice(run(0, kLastRow))), once, 0.02);
+}
+
 TEST(RepeatedRows, AScanIsTakenOutWithAllItsPasses) {
   test::ScanSet set;
   set.add(rows_at(run(0, kLastRow), 0.01), {});
