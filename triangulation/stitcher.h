@@ -41,8 +41,8 @@ struct StitchOptions {
 /// and averages are worked out by update(), or when overlaps() or mesh() asks, and anew only where something
 /// has changed: those two are not for several threads at once, const as they are. The mesh depends on the set
 /// of scans alone, not on the order, nor on the number of threads. Scans with the very same samples are one
-/// measurement: while several are held, the one with the lowest id takes part, and the mesh is as without the
-/// others.
+/// measurement: while several are held, the one with the most samples takes part, of equals that with the
+/// lowest id, and the mesh is as without the others.
 class Stitcher {
  public:
   explicit Stitcher(StitchOptions options = {});
