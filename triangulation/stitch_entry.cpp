@@ -45,8 +45,10 @@ std::optional<FoundPairs> pairs_between(const PassKey& key, const StitchSurface&
 
 namespace {
 
-/// Pairs are where the other scan has the same place, as the motions say, not where its pose puts it.
-void look_for_pairs_anew(Entries& entries, const std::function<SmallMotion(const PassKey&)>& back_of) {
+/// Pairs are where the other scan has the same place, as the motions say, not where its pose puts it. False
+/// when cancelled: then some are where they were.
+bool look_for_pairs_anew(Entries& entries, const std::function<SmallMotion(const PassKey&)>& back_of,
+                         const JobContext& job) {
   for (auto& [key, entry] : entries) {
     for (auto& [other_key, pairs] : entry.pairs) {
       const SmallMotion onto =
@@ -54,16 +56,20 @@ void look_for_pairs_anew(Entries& entries, const std::function<SmallMotion(const
       if (onto == pairs.onto) {
         continue;
       }
+      if (job.cancelled()) {
+        return false;
+      }
       entry.mark_changed(pairs);
       pairs = find_pairs_anew(entry.surface, entries.at(other_key).surface, std::move(pairs), onto);
       entry.mark_changed(pairs);
     }
   }
+  return true;
 }
 
 }  // namespace
 
-void weigh_places(Entries& entries) {
+bool weigh_places(Entries& entries, const JobContext& job) {
   // Distances between the same places say more than those between places that poses put beside each other.
   constexpr int kRounds = 3;
   std::vector<const StitchSurface*> scans;
@@ -80,15 +86,22 @@ void weigh_places(Entries& entries) {
     std::vector<PoseLink> links;
     for (const auto& [key, entry] : entries) {
       for (const auto& [other_key, step] : entry.steps) {
+        if (job.cancelled()) {
+          return false;
+        }
         const Entry& other = entries.at(other_key);
+        const Pairs& there = entry.pairs.at(other_key);
+        const Pairs& back = other.pairs.at(key);
+        // Of pairs that are where the poses put them the step is known.
+        const bool as_posed = round == 0 || (there.onto.is_none() && back.onto.is_none());
         links.push_back({place.at(key.first), place.at(other_key.first),
-                         round == 0 ? step
-                                    : pose_step(entry.surface, entry.pairs.at(other_key), other.surface,
-                                                other.pairs.at(key))});
+                         as_posed ? step : pose_step(entry.surface, there, other.surface, back)});
       }
     }
     off = misplacements(scans, links);
-    look_for_pairs_anew(entries, back_of);
+    if (!look_for_pairs_anew(entries, back_of, job)) {
+      return false;
+    }
     if (std::ranges::all_of(off, [](const Misplacement& m) { return m.back.is_none(); })) {
       break;
     }
@@ -103,6 +116,7 @@ void weigh_places(Entries& entries) {
       other.mark_changed(other.pairs.at(key));
     }
   }
+  return true;
 }
 
 std::vector<int> without_surface(const Entries& entries) {

@@ -58,8 +58,9 @@ struct FoundPairs {
 using Entries = std::map<PassKey, Entry>;
 
 /// What the steps between scans say of their poses' errors comes into their surfaces; where that changes
-/// something, averages are old.
-void weigh_places(Entries& entries);
+/// something, averages are old. False when cancelled: then the surfaces are as they were, and it has to be
+/// done again.
+[[nodiscard]] bool weigh_places(Entries& entries, const JobContext& job);
 
 /// The scans of which no pass has a triangle; by id.
 [[nodiscard]] std::vector<int> without_surface(const Entries& entries);

@@ -170,9 +170,10 @@ struct Stitcher::Impl {
       }
       unpaired.erase(unpaired.begin());
     }
-    if (std::exchange(places_are_old, false)) {
-      weigh_places(entries);
+    if (places_are_old && !weigh_places(entries, job)) {
+      return false;
     }
+    places_are_old = false;
     return true;
   }
 

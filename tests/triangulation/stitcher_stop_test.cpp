@@ -6,12 +6,15 @@
 #include <algorithm>
 #include <cstddef>
 #include <limits>
+#include <optional>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "tests/triangulation/support/ball_scans.h"
 #include "triangulation/fusion.h"
 #include "triangulation/pairing.h"
+#include "triangulation/stitch_entry.h"
 
 namespace dubsar {
 namespace {
@@ -127,6 +130,26 @@ TEST(StitcherStop, OneThatLetsGoOfItsScansHoldsNone) {
   EXPECT_TRUE(stitcher.mesh().faces.empty());
   ASSERT_TRUE(stitcher.add(set.placed, JobContext()));
   expect_same(stitcher.mesh(), stitched(set));
+}
+
+/// However many pairs there are, whose steps are measured and which are looked for anew.
+TEST(StitcherStop, PlacesAreNotWeighed) {
+  const test::ScanSet set = ball(kCoarse_mm);
+  const PassKey one(0, 0), two(2, 0);
+  Entries entries;
+  Entry& first = entries[one];
+  Entry& second = entries[two];
+  first.surface = make_scan_surface(set.placed[0], {});
+  second.surface = make_scan_surface(set.placed[2], {});
+  std::optional<FoundPairs> found = pairs_between(one, first.surface, two, second.surface, {}, JobContext());
+  ASSERT_TRUE(found.has_value());
+  first.steps[two] = found->step;
+  first.pairs.emplace(two, std::move(found->there));
+  second.pairs.emplace(one, std::move(found->back));
+  JobContext stopped;
+  stopped.cancel();
+  EXPECT_FALSE(weigh_places(entries, stopped));
+  EXPECT_TRUE(weigh_places(entries, JobContext()));
 }
 
 /// What the stages are made of asks the job, too.
