@@ -87,6 +87,13 @@ Result<StationScan> Engine::Impl::enter_again(int id, JobContext& job) {
     return std::unexpected(grid.error());
   }
   StationScan scan = prepare_scan(id, std::move(*grid), known_pins());
+  {
+    // Motors go by it: without, planning would take the tablet to lie as for another scan, or for not there.
+    const std::scoped_lock lock(mutex);
+    if (const auto drive = drives_of_scans.find(id); drive != drives_of_scans.end()) {
+      scan.drive = drive->second;
+    }
+  }
   names[id] = scan.file;
   register_scan(scan, job);
   return scan;

@@ -132,7 +132,7 @@ struct Engine::Impl {
   KnownScans known_files;            ///< a replayed file whose scan is in the session is not stored again
   bool told_unit = false;            ///< that scans are in the session in another unit
   int placement_offset = 0;          ///< a resumed session starts with a lifted tablet
-  std::map<int, Placement> drives_of_scans;  ///< of the storing thread once the pipeline runs
+  std::map<int, Placement> drives_of_scans;  ///< once the pipeline runs written by the storing thread alone
   bool wait_for_plan = false;                ///< the session that goes on says first whether it needs more
   bool drives = false;                       ///< automatic, and the device can be placed
   bool waits_for_hands_alone = false;        ///< paced, but for scans that were not taken up

@@ -172,7 +172,10 @@ NextStep Engine::Impl::step_to(const RedMap& red_map) const {
 }
 
 Status Engine::Impl::note_drive(int id, const Placement& drive) {
-  drives_of_scans[id] = drive;
+  {
+    const std::scoped_lock lock(mutex);
+    drives_of_scans[id] = drive;
+  }
   return store->save_document("drives", drives_to_json(drives_of_scans));
 }
 

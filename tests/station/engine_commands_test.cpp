@@ -136,6 +136,31 @@ TEST(EngineCommands, ThinksAllOfThemOverBeforeItWaitsAgain) {
   EXPECT_EQ(engine.times_waited(), 3);
 }
 
+// Whatever is said of a scan, it was driven to: planner and motors go on by that.
+TEST(EngineCommands, AScanThatIsPutBackIsTakenAgainFromWhereItWasDrivenTo) {
+  const test::TemporaryFolder folder;
+  EngineOptions options;
+  options.device = "sim:?seed=1&size=20x16x8&spacing=0.25&noise=0.02";
+  options.session = folder.path() / "session";
+  options.automatic = options.paced = true;
+  RunningEngine engine(options);
+  ASSERT_TRUE(engine.waits(1));
+  ASSERT_TRUE(engine.post(DropScan{0, "by mistake"}));
+  ASSERT_TRUE(engine.post(RestoreScan{0}));
+  ASSERT_TRUE(engine.post(ScanAgain{0}));
+  ASSERT_TRUE(engine.says("scan 0 is put back"));
+  ASSERT_TRUE(engine.waits(2)) << "it knows of no view to take again";
+  const std::optional<NextView> next = engine.next();
+  ASSERT_TRUE(next && next->placement);
+  EXPECT_EQ(next->placement->turntable_rad, 0);
+  EXPECT_EQ(next->placement->tilt_rad, 0);
+  ASSERT_TRUE(engine.post(ScanNow{}));
+  ASSERT_TRUE(engine.waits(3));
+  ASSERT_TRUE(engine.post(Finish{}));
+  const Result<EngineResult>& result = engine.join();
+  ASSERT_TRUE(result.has_value()) << result.error().line();
+}
+
 std::vector<int> ids_of(const std::vector<ScanPose>& poses) {
   std::vector<int> ids;
   for (const ScanPose& pose : poses) {
