@@ -77,6 +77,8 @@ class Engine {
   /// session is read. From any thread, never from the event sink; returns at once. False when the engine
   /// already writes its final results, or has ended.
   bool post(OperatorCommand command);
+  /// Behind run(): what was posted before a run that failed or was stopped came to it, moved out.
+  [[nodiscard]] std::vector<OperatorCommand> take_unheeded();
 
   /// The emergency stop, from any thread; returns at once. Lasers go off and motors stop, wherever run() is;
   /// it then ends like one whose device has failed: what was scanned until then is kept.

@@ -38,6 +38,13 @@ bool Engine::post(OperatorCommand command) {
   return true;
 }
 
+std::vector<OperatorCommand> Engine::take_unheeded() {
+  const std::scoped_lock lock(impl_->mutex);
+  std::vector<OperatorCommand> out(impl_->commands.begin(), impl_->commands.end());
+  impl_->commands.clear();
+  return out;
+}
+
 void Engine::Impl::tell_unheeded() {
   const bool any = [&] {
     const std::scoped_lock lock(mutex);

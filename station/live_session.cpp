@@ -344,6 +344,13 @@ void LiveSession::run_engine(std::vector<OperatorCommand> first, bool first_scan
   const auto scans = store ? store->scans() : std::unexpected(store.error());
   {
     const std::scoped_lock lock(mutex_);
+    if (closing_) {  // nobody sees the notice that they were not heeded: they are kept
+      std::vector<OperatorCommand> words = engine->take_unheeded();
+      std::erase_if(words, [](const OperatorCommand& word) {
+        return std::holds_alternative<DescribeTablet>(word);  // record_told_ has it
+      });
+      later_.insert(later_.begin(), words.begin(), words.end());
+    }
     if (job_->cancelled() || state_.halted) {
       drop_asked();
     }

@@ -150,6 +150,33 @@ TEST(LiveWords, AreKeptWhereTheWindowIsClosedBeforeTheyAreHeeded) {
   EXPECT_TRUE(is_out(folder.path() / "s", 0));
 }
 
+/// The run has them, and is stopped with the window before it comes to them.
+TEST(LiveWords, AreKeptWhereTheWindowIsClosedBeforeARunThatTookThemHasHeededThem) {
+  const test::TemporaryFolder folder;
+  {
+    Result<SessionStore> store = SessionStore::open_or_create(folder.path() / "s");
+    ASSERT_TRUE(store && store->add_grid(test::bumpy_scan(0, 11, 1.0)));
+  }
+  const TellsOfClosing closing;
+  const auto opens = [](const LiveState& state, const LiveSession&) {
+    return state.phase == LivePhase::kOpening;
+  };
+  Saying saying({kSmallTablet, folder.path() / "s", std::nullopt, true, closing}, opens,
+                [&](LiveSession& session) {
+                  session.ask(DropScan{0, "undone by the operator"});
+                  *closing.armed = true;
+                  while (!*closing.closes) {
+                    std::this_thread::yield();
+                  }
+                });
+  saying.session().scan_now();
+  while (!*closing.armed) {
+    std::this_thread::yield();
+  }
+  saying.close();
+  EXPECT_TRUE(is_out(folder.path() / "s", 0));
+}
+
 /// A session of one scan, signed, in its package.
 class LiveSigned : public ::testing::Test {
  protected:
