@@ -303,6 +303,13 @@ void LiveSession::run_engine(std::vector<OperatorCommand> first, bool first_scan
       drop_asked();
       return;
     }
+    // What was asked for while this run began is of this run. Behind it, it would be words that are not
+    // heeded for hours, and a scan that begins by itself where somebody takes the tablet away.
+    first.insert(first.end(), later_.begin(), later_.end());
+    later_.clear();
+    if (std::exchange(scan_later_, false)) {
+      first_scan_waits = false;
+    }
     options.device = uri = options_.device;
     options.session = options_.session;
     options.pins = options_.pins;

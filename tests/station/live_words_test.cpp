@@ -150,6 +150,27 @@ TEST(LiveWords, AreKeptWhereTheWindowIsClosedBeforeTheyAreHeeded) {
   EXPECT_TRUE(is_out(folder.path() / "s", 0));
 }
 
+/// As labels of pins are: two scans at once. The second comes while a run is still being begun for the first.
+TEST(LiveWords, ThatComeAtOnceAreOfOneRun) {
+  const test::TemporaryFolder folder;
+  test::Followed followed(kSmallTablet, folder.path() / "s");
+  followed.session.scan_now();
+  ASSERT_TRUE(followed.wait_for_phase(LivePhase::kWaiting));
+  followed.session.finish();
+  ASSERT_TRUE(followed.wait_for_rest());
+  const std::size_t count = followed.session.state().scans.size();
+  ASSERT_GE(count, 2U);
+  followed.session.ask(LockScan{0});
+  followed.session.ask(DropScan{static_cast<int>(count) - 1, "undone by the operator"});
+  EXPECT_TRUE(followed.wait_until([](const LiveState& state) {
+    const LiveScan& first = state.scans.front();
+    return state.phase == LivePhase::kWaiting && first.pose && first.pose->locked &&
+           state.scans.back().dropped;
+  })) << "the run waits for a scan, and one of them waits for its end";
+  followed.session.stop();
+  ASSERT_TRUE(followed.wait_for_rest());
+}
+
 /// The run has them, and is stopped with the window before it comes to them.
 TEST(LiveWords, AreKeptWhereTheWindowIsClosedBeforeARunThatTookThemHasHeededThem) {
   const test::TemporaryFolder folder;
