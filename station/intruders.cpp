@@ -73,13 +73,15 @@ std::optional<Intruder> IntruderFinder::look(int newest, const std::vector<ScanP
     return pose != poses.end() && pose->status == PoseStatus::kRegistered ? &pose->model_from_scanner
                                                                           : nullptr;
   };
+  // One that the operator has taken out may have been of the tablet as it lay before somebody moved it.
+  const auto stands = [&](int id) { return std::ranges::find(poses, id, &ScanPose::id) != poses.end(); };
   const RigidTransform* here = registered(newest);
   std::optional<Intruder> found;
   for (const auto& [id, other] : scans_) {
     const RigidTransform* there = registered(id);
     const bool lies_as_before =
         mine->second.nominal && other.nominal && mine->second.nominal->placement == other.nominal->placement;
-    if (id == newest || (!(here != nullptr && there != nullptr) && !lies_as_before)) {
+    if (id == newest || !stands(id) || (!(here != nullptr && there != nullptr) && !lies_as_before)) {
       continue;
     }
     const RigidTransform other_from_mine =

@@ -28,8 +28,8 @@ class IntruderFinder {
  public:
   void add(const StationScan& scan);
   void remove(int id);
-  /// Holds the scan that came last against all others: by their poses where both are registered, else by what
-  /// the motors say where the tablet was not lifted in between.
+  /// Holds the scan that came last against all others that `poses` tells of: by their poses where both are
+  /// registered, else by what the motors say where the tablet was not lifted in between.
   [[nodiscard]] std::optional<Intruder> look(int newest, const std::vector<ScanPose>& poses) const;
 
  private:
