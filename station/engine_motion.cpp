@@ -153,16 +153,22 @@ NextStep Engine::Impl::step_to(const RedMap& red_map) const {
     return std::nullopt;
   }
   NextStep step;
+  const bool is_known = planning.knows_how_it_lies();
   for (const NextView& view : red_map.next) {
     if (!view.placement) {
       continue;
     }
-    const auto on_stage = rig ? planning.scene_for(*rig, *view.placement) : std::nullopt;
-    Step one{.view = view, .scene = on_stage.value_or(StageScene{}), .again = false};
+    StageScene on_stage;
+    if (rig) {  // of one that was laid otherwise since, whatever way it lies
+      on_stage =
+          is_known ? planning.scene_for(*rig, *view.placement).value_or(StageScene{}) : unseen_and(view);
+    }
+    Step one{.view = view, .scene = on_stage, .again = false};
     if (!rig || check_clear(*rig, one.scene, *view.placement, options.device)) {
       if (const auto side = rig ? planning.before_lifting(*rig, view) : std::nullopt) {
         one.view = *side;
-        one.scene = planning.scene_for(*rig, *side->placement).value_or(one.scene);
+        one.scene =
+            is_known ? planning.scene_for(*rig, *side->placement).value_or(one.scene) : unseen_and(*side);
       }
       return one;
     }

@@ -184,8 +184,9 @@ void Engine::Impl::plan_all(JobContext& job) {
       }
       queues->to_device.push(std::move(step));
     } else if (drives && options.paced) {
+      NextStep step = as_before ? as_before : step_to(*red_map);
       const std::scoped_lock lock(mutex);
-      changed_step = as_before ? as_before : step_to(*red_map);
+      changed_step = std::move(step);
     } else if (!drives && options.paced && !source->capabilities().finite) {
       end_conclusive(*red_map, *item);
     }

@@ -163,6 +163,20 @@ std::optional<StageScene> PlanningStage::scene_for(const Rig& rig, const Placeme
   return lies.turned(*placement.hand_turn, box.center()).scene(rig, points);
 }
 
+bool PlanningStage::knows_how_it_lies() const {
+  const std::optional<StageState> state = stage();
+  const StationScan* last = nullptr;
+  for (const auto& [id, scan] : scans_) {
+    last = scan.drive ? &scan : last;
+  }
+  if (!state || last == nullptr || last->id == state->scan_id) {
+    return state.has_value();
+  }
+  const std::optional<NominalPose>& then = scans_.at(state->scan_id).grid->nominal;
+  const std::optional<NominalPose>& now = last->grid->nominal;
+  return then && now && then->placement == now->placement;
+}
+
 std::optional<NextView> PlanningStage::before_lifting(const Rig& rig, const NextView& next) const {
   const double from_the_side = rad_from_deg(40.0);
   const std::optional<StageState> state = stage();

@@ -64,6 +64,10 @@ class PlanningStage {
   /// by hand that the placement asks for. Nothing before a scan is placed that was driven to.
   [[nodiscard]] std::optional<StageScene> scene_for(const Rig& rig, const Placement& placement) const;
 
+  /// Whether scene_for() is of the tablet as it lies: not where it was laid otherwise for a scan that is out
+  /// again, or has no place.
+  [[nodiscard]] bool knows_how_it_lies() const;
+
   /// Before a step that lifts the tablet: a view from its side, while it was scanned only once and the rig
   /// can look from there. Else nothing.
   [[nodiscard]] std::optional<NextView> before_lifting(const Rig& rig, const NextView& next) const;

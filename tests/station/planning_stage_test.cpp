@@ -60,6 +60,28 @@ TEST(PlanningStage, TheWayThereDoesNotMatter) {
   EXPECT_EQ(map_after({wandering, poses_with(0.01)}), map_after({poses_with(0.01)}));
 }
 
+// Motors must not be sent past a tablet that stands on its edge as if it lay flat as before.
+TEST(PlanningStage, KnowsNotHowATabletLiesThatWasTurnedForAScanWithoutAPlace) {
+  for (const int placement : {0, 1}) {
+    PlanningStage stage;
+    EXPECT_FALSE(stage.knows_how_it_lies());
+    for (int k = 0; k < 3; ++k) {
+      RangeGrid grid = test::bumpy_scan(k);
+      grid.nominal.emplace().placement = k == 2 ? placement : 0;
+      StationScan scan = prepare_scan(k, std::move(grid), std::nullopt);
+      scan.drive = Placement{};
+      stage.add(scan);
+    }
+    JobContext job;
+    std::vector<ScanPose> poses = poses_with(0.01);
+    ASSERT_TRUE(stage.place(poses, true, job));
+    EXPECT_TRUE(stage.knows_how_it_lies());
+    poses.pop_back();
+    ASSERT_TRUE(stage.place(poses, true, job));
+    EXPECT_EQ(stage.knows_how_it_lies(), placement == 0) << "or it was not turned";
+  }
+}
+
 /// Red map, mesh and checklist see the scan once, and the copy is told.
 TEST(PlanningStage, ACopyIsTheScanThatItIsOf) {
   PlanningStage stage;
