@@ -389,6 +389,8 @@ void LiveSession::run_engine(std::vector<OperatorCommand> first, bool first_scan
   }
   if (!result) {
     end(std::unexpected(result.error()));
+    // The device with it: whoever looks through its camera wants it while a package is looked through.
+    engine.reset();
     if (store && begins_afterwards()) {
       verdict_after_break(*store);
       look_for_package(package);
