@@ -166,6 +166,10 @@ class ScanModel {
   [[nodiscard]] std::optional<int> whole_among(const std::vector<int>& ids, int id) const;
   /// How many measurements these scans are.
   [[nodiscard]] std::size_t measurements(const std::vector<int>& ids) const;
+  /// Those of these ids (ascending) whose samples tell something of this scan: not what has the same ones,
+  /// its parts and what it is a part of, which would say that all is well with it; and no part beside its
+  /// whole, which would say the same twice.
+  [[nodiscard]] std::vector<int> heard_of(const std::vector<int>& ids, int id) const;
   /// Lays parts of scans where these lie.
   void place_parts(const std::vector<int>& ids);
   /// Makes the surfaces of all scans anew for another scale; what was searched before is searched again.
@@ -216,7 +220,7 @@ class ScanModel {
   Status relax_group(int group, const JobContext& job);
   /// The same while scans come in: a failure is logged, and the next scan or finalize() tries again.
   void settle_group(int group, const JobContext& job);
-  /// A scan among the others of its group.
+  /// A scan among the others of its group that tell something of it.
   struct InGroup {
     PlacedSurface scan;
     std::vector<PlacedSurface> others;
@@ -241,7 +245,7 @@ class ScanModel {
   [[nodiscard]] std::string name_of(int id) const;  ///< for people
   /// Said of what is wrong with a scan where these, but for it, are one other only; empty where they are
   /// more.
-  [[nodiscard]] std::string only_one(std::vector<int> ids, int id) const;
+  [[nodiscard]] std::string only_one(const std::vector<int>& ids, int id) const;
   /// The scan whose hint says how two groups lie to each other.
   [[nodiscard]] std::optional<int> hint_between(int group_a, int group_b) const;
   /// Whether no hint between the scan's group and the other contradicts the pose.

@@ -223,10 +223,8 @@ std::vector<int> ScanModel::warn_of_steps(const std::vector<int>& ids) {
 ScanModel::InGroup ScanModel::placed_among(int id, const std::vector<int>& ids) const {
   const Scan& scan = scans_.at(id);
   InGroup out{{scan.features.surface, scan.group_from_scanner}, {}, {}};
-  for (const int other : ids) {
-    if (other != id) {
-      out.others.push_back({scans_.at(other).features.surface, scans_.at(other).group_from_scanner});
-    }
+  for (const int other : heard_of(ids, id)) {
+    out.others.push_back({scans_.at(other).features.surface, scans_.at(other).group_from_scanner});
   }
   out.fit = judge_in_model(*out.scan.surface, model_scans(out.others), scan.group_from_scanner,
                            options_.search.fit);
@@ -238,11 +236,11 @@ void ScanModel::add_warning(int id, const std::string& said) {
   warning += (warning.empty() || said.empty() ? "" : "; ") + said;
 }
 
-std::string ScanModel::only_one(std::vector<int> ids, int id) const {
-  std::erase(ids, id);
-  return ids.size() == 1
-             ? "; or that is wrong with " + name_of(ids.front()) + ", the only one that it was compared with"
-             : "";
+std::string ScanModel::only_one(const std::vector<int>& ids, int id) const {
+  const std::vector<int> others = heard_of(ids, id);
+  return others.size() == 1 ? "; or that is wrong with " + name_of(others.front()) +
+                                  ", the only one that it was compared with"
+                            : "";
 }
 
 std::string ScanModel::name_of(int id) const {

@@ -3,6 +3,7 @@
 // Parts of scans that came as scans of their own. A part may find its place where the whole does not (a hand
 // was cut off), so it is searched like any other; beside the whole it says nothing that this one does not.
 #include <algorithm>
+#include <iterator>
 
 #include "registration/relaxation_covariance.h"
 #include "registration/scan_model.h"
@@ -41,6 +42,15 @@ std::optional<int> ScanModel::whole_among(const std::vector<int>& ids, int id) c
 std::size_t ScanModel::measurements(const std::vector<int>& ids) const {
   return ids.size() - static_cast<std::size_t>(std::ranges::count_if(
                           ids, [&](int id) { return whole_among(ids, id).has_value(); }));
+}
+
+std::vector<int> ScanModel::heard_of(const std::vector<int>& ids, int id) const {
+  std::vector<int> out;
+  std::ranges::copy_if(ids, std::back_inserter(out), [&](int other) {
+    return other != id && !whole_among(ids, other) && !parts_.contains({id, other}) &&
+           !parts_.contains({other, id});
+  });
+  return out;
 }
 
 void ScanModel::place_parts(const std::vector<int>& ids) {

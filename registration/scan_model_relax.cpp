@@ -140,10 +140,8 @@ void ScanModel::settle_group(int group, const JobContext& job) {
 std::optional<ScanModel::InGroup> ScanModel::in_group(int id) {
   Scan& scan = scans_.at(id);
   std::vector<PlacedSurface> others;
-  for (const int other : members(scan.group)) {
-    if (other != id) {
-      others.push_back({scans_.at(other).features.surface, scans_.at(other).group_from_scanner});
-    }
+  for (const int other : heard_of(members(scan.group), id)) {
+    others.push_back({scans_.at(other).features.surface, scans_.at(other).group_from_scanner});
   }
   if (others.empty()) {
     return std::nullopt;
