@@ -348,9 +348,10 @@ ScanPose ScanModel::pose(int as) const {
   out.rms_mm = scan.rms_mm;
   out.overlap = scan.overlap;
   if (!scan.usable || scan.group != main_group()) {
-    const bool in_group = scan.usable && members(scan.group).size() > 1;
+    // Its own parts are no other scans that it fits.
+    const bool in_group = scan.usable && measurements(members(scan.group)) > 1;
     out.status = in_group ? PoseStatus::kUnsure : scan.outcome;
-    if (in_group && measurements(members(scan.group)) > 1) {
+    if (in_group) {
       out.group_apart = members(scan.group).front();
     }
     out.reason = in_group                     ? kOtherGroup

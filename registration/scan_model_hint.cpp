@@ -251,7 +251,7 @@ bool ScanModel::join_as_given(int id, int group, JobContext& job) {
   const PoseHint given{-1, {}, scan.group_from_scanner};
   if (!registered ||
       !agrees_with(given, found.fits.front().model_from_scanner, scan.features.surface->centroid_mm)) {
-    if (members(scan.group).size() == 1) {
+    if (measurements(members(scan.group)) == 1) {
       scan.reason = job.cancelled() ? "registration was stopped; run it again"
                     : registered    ? "the pose that was given does not fit; register it without"
                                     : found.verdict.reason;

@@ -135,7 +135,7 @@ bool ScanModel::join_unhinted(int id, const std::vector<int>& ids, int group, Jo
   }
   if (found.verdict.status != PoseStatus::kRegistered || job.cancelled()) {
     // What the largest group says counts; groups are tried by size.
-    if (members(scan.group).size() == 1 && (group == main_group() || scan.reason.empty())) {
+    if (measurements(members(scan.group)) == 1 && (group == main_group() || scan.reason.empty())) {
       scan.reason = job.cancelled() ? kStopped : found.verdict.reason;
       if (!found.fits.empty() && !job.cancelled() && half_sure(found.fits.front(), options_.search.verify)) {
         const std::optional<ScanMotion> motion =
@@ -276,7 +276,11 @@ void ScanModel::connect(int id, const ModelFit& fit, bool by_stage, const std::v
     unchecked_.insert(fitted_ids[k]);
   }
   measure_pairs(pairs);
-  for (const int i : members(scan.group)) {
+  const std::vector<int> joined = members(scan.group);
+  if (measurements(joined) == 1) {
+    return;  // that a scan and its part fit each other settles nothing of what is wrong with either
+  }
+  for (const int i : joined) {
     scans_.at(i).fault_reason.clear();
   }
   scan.reason.clear();

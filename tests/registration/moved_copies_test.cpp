@@ -17,7 +17,9 @@ namespace {
 
 using testing::bumpy;
 using testing::FieldScan;
+using ::testing::HasSubstr;
 using testing::Height;
+using ::testing::Not;
 using testing::pose_of;
 using testing::scan_field;
 
@@ -263,6 +265,11 @@ TEST_F(MovedCopies, PartsHaveNoVote) {
   add(6, grids()[1]);
   finalize();
   EXPECT_NE(pose(0).status, PoseStatus::kRegistered);
+  for (const int id : {0, 1, 2}) {  // which fit nothing but themselves
+    EXPECT_EQ(pose(id).group_apart, -1) << id;
+    EXPECT_THAT(pose(id).reason, Not(HasSubstr("it fits other scans"))) << id;
+    EXPECT_THAT(pose(id).reason, Not(HasSubstr("it was not tried"))) << id;
+  }
   EXPECT_EQ(pose(5).status, PoseStatus::kRegistered) << pose(5).reason;
   EXPECT_EQ(pose(6).status, PoseStatus::kRegistered) << pose(6).reason;
 }
