@@ -199,7 +199,7 @@ Result<std::vector<StationScan>> Engine::Impl::label_pins(const LabelPins& comma
     out.push_back(std::move(*entered));
   }
   what = "the pins of scan " + std::to_string(command.id) +
-         (command.tips.empty() ? " have no labels any more" : " are labelled");
+         (command.tips.empty() ? " have no labels by hand any more" : " are labelled");
   return out;
 }
 

@@ -8,6 +8,8 @@
 #include <optional>
 #include <set>
 
+#include "core/pin_set.h"
+#include "formats/pins_json.h"
 #include "formats/poses_json.h"
 #include "registration/point_pairs.h"
 #include "station/session_pages.h"
@@ -25,6 +27,7 @@ constexpr const char* kTriedHint = "the hint leads to no certain pose";
 struct Said {
   std::string hint;  ///< as it was written down; empty without one
   std::string lock;
+  std::string pins;  ///< its labels by hand
   bool out = false;
   friend bool operator==(const Said&, const Said&) = default;
 };
@@ -62,6 +65,17 @@ void note(const SessionEvent& event, Record& record) {
   }
 }
 
+/// The event is of one scan; no tips take back what was said.
+void note_labels(const SessionEvent& event, Record& record) {
+  const Result<PinSet> labelled = parse_pins(event.json, event.kind);
+  if (!labelled) {
+    return;
+  }
+  for (const auto& [id, tips] : labelled->tips) {
+    record.now[id].pins = tips.empty() ? std::string() : event.json;
+  }
+}
+
 Result<Record> read_record(const SessionStore& store) {
   const auto events = store.events();
   if (!events) {
@@ -71,6 +85,10 @@ Result<Record> read_record(const SessionStore& store) {
   for (const SessionEvent& event : *events) {
     if (event.kind == kFollowed || event.kind == kFinished) {
       note(event, record);
+      continue;
+    }
+    if (event.kind == "pins labelled") {
+      note_labels(event, record);
       continue;
     }
     const bool hint = event.kind == "pose hint" || event.kind == "pose hint withdrawn";
@@ -200,6 +218,10 @@ Result<std::vector<std::string>> not_followed(const ScanSet& set) {
     }
     if (now.lock != before.lock) {
       out.push_back(scan + (now.lock.empty() ? " has been unlocked" : " has been locked"));
+    }
+    if (now.pins != before.pins) {
+      out.push_back("the pins of " + scan +
+                    (now.pins.empty() ? " have no labels by hand any more" : " are labelled"));
     }
   }
   return out;

@@ -11,9 +11,9 @@
 
 namespace dubsar {
 
-// Whether the stored poses follow what the operator has said of the scans: hints, locks, scans taken out and
-// put back. The order of the session's events tells, never a clock. A hint or a scan that is given and taken
-// back again leaves nothing to follow.
+// Whether the stored poses follow what the operator has said of the scans: hints, locks, labels of pins,
+// scans taken out and put back. The order of the session's events tells, never a clock. A hint or a scan that
+// is given and taken back again leaves nothing to follow.
 
 /// Saves poses for which all that was said was heeded, or with `only` what was said of those scans, and notes
 /// it in the record: the first time, and where something was said since. Pages that show other places are

@@ -269,7 +269,7 @@ TEST(EngineCommands, LabelsThatAreTakenBackAreNoPinsAnyMore) {
   ASSERT_TRUE(engine.post(LabelPins{0, {{1, {3, 4, 5}}}, 1.5}));
   ASSERT_TRUE(engine.says("the pins of scan 0 are labelled\n"));
   ASSERT_TRUE(engine.post(LabelPins{0, {}, 1.5}));
-  ASSERT_TRUE(engine.says("the pins of scan 0 have no labels any more\n"));
+  ASSERT_TRUE(engine.says("the pins of scan 0 have no labels by hand any more\n"));
   const std::string said = engine.said();
   EXPECT_THAT(said.substr(said.find("are labelled")), HasSubstr("\nno pins\n"));
   ASSERT_TRUE(engine.post(Finish{}));

@@ -8,6 +8,8 @@
 #include <fstream>
 
 #include "acquisition/session_store.h"
+#include "core/pin_set.h"
+#include "formats/pins_json.h"
 #include "station/not_conclusive.h"
 #include "tests/station/support/bumpy_scans.h"
 #include "tests/station/support/command.h"
@@ -208,6 +210,31 @@ TEST_F(SaidSince, AHintOrAScanTakenOutIsFollowedFirst) {
   // What is taken back leaves nothing to follow.
   say({"unlock", "1"});
   say({"restore", "2"});
+  is_signed();
+}
+
+/// As a window keeps them that is closed before they are heeded.
+TEST_F(SaidSince, LabelsOfPinsAreFollowedFirst) {
+  const auto label = [&](const std::vector<PinTip>& tips) {
+    SessionStore store = SessionStore::open(session_).value();
+    PinSet said;
+    said.tip_diameter_mm = 1.5;
+    said.tips[1] = tips;
+    ASSERT_TRUE(store.append_event("pins labelled", pins_to_json(said)));
+    if (tips.empty()) {
+      said.tips.clear();
+    }
+    ASSERT_TRUE(store.save_document("pin_labels", pins_to_json(said)));
+  };
+  label({{7, {3, 4, 5}}});
+  is_refused("the pins of scan 1 are labelled");
+  label({});  // what is taken back leaves nothing to follow
+  is_signed();
+  label({{7, {3, 4, 5}}});
+  run_command({"register", session_});
+  label({});
+  is_refused("the pins of scan 1 have no labels by hand any more");
+  run_command({"register", session_});
   is_signed();
 }
 

@@ -412,8 +412,8 @@ TEST(EngineWords, SentencesOfUnsureScansAreGerman) {
       "mm; "
       "ihn entfernen und neu scannen");
   EXPECT_EQ(translated("scan 4 is taken out", Language::kGerman), "Scan 4 ist entfernt");
-  EXPECT_EQ(translated("the pins of scan 2 have no labels any more", Language::kGerman),
-            "die Nadeln von Scan 2 haben keine Namen mehr");
+  EXPECT_EQ(translated("the pins of scan 2 have no labels by hand any more", Language::kGerman),
+            "die Nadeln von Scan 2 haben keine Namen von Hand mehr");
   EXPECT_EQ(translated("what can be read of that scan is stored; all of its files stay in "
                        "grids/unfinished/1.damaged-1",
                        Language::kGerman),

@@ -185,7 +185,7 @@ constexpr EnginePhrase kPhrases[] = {
     {" is taken out", " ist entfernt"},
     {" is put back", " ist zurückgeholt"},
     {" has no hint any more", " hat keinen Hinweis mehr"},
-    {" have no labels any more", " haben keine Namen mehr"},
+    {" have no labels by hand any more", " haben keine Namen von Hand mehr"},
     {" has a hint", " hat einen Hinweis"},
     {" is unlocked", " ist gelöst"},
     {"the scan is locked", "der Scan ist festgehalten"},
