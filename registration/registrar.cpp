@@ -77,8 +77,9 @@ Status Registrar::set_hint(int id, const PoseHint& hint, JobContext& job) {
   return {};
 }
 
-void Registrar::clear_hint(int id) {
-  state_->clear_hint(id);
+void Registrar::clear_hint(int id, JobContext& job) {
+  state_->clear_hint(id, job);
+  state_->put_out_faulty(job);
 }
 
 bool Registrar::set_locked(int id, bool locked) {

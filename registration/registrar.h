@@ -69,7 +69,8 @@ class Registrar {
   /// (point_pairs.h) or a pose that is not rigid, kUsage for a hint of a scan on itself or a copy of it, or
   /// for a locked scan.
   Status set_hint(int id, const PoseHint& hint, JobContext& job);
-  void clear_hint(int id);
+  /// What stood outside for it is tried without it, at once; when the job is cancelled, by finalize().
+  void clear_hint(int id, JobContext& job);
   /// Locks a scan where it is, or unlocks it. False when there is none that could be registered. A scan with
   /// copies is fixed as long as one of them is locked; each of them says only of its own lock.
   bool set_locked(int id, bool locked);

@@ -55,7 +55,8 @@ class ScanModel {
   // The operator's word (scan_model_hint.cpp). A hint stands from when it is given, whether its scans are in
   // or not: groups that it spans are joined by it and by nothing else.
   void set_hint(int id, const PoseHint& hint);
-  void clear_hint(int id);
+  /// What it kept outside is tried without it.
+  void clear_hint(int id, JobContext& job);
   /// Places a scan that is in by its hint, taking it out of a place that the hint contradicts. True when it
   /// then stands where the hint says, verified.
   bool follow_hint(int id, JobContext& job);

@@ -159,17 +159,20 @@ void ScanModel::set_hint(int id, const PoseHint& hint) {
   hints_[id] = hint;
 }
 
-void ScanModel::clear_hint(int id) {
+void ScanModel::clear_hint(int id, JobContext& job) {
   const auto hint = hints_.find(id);
   if (hint == hints_.end()) {
     return;
   }
   for (const int either : {id, hint->second.on}) {
-    if (const auto scan = scans_.find(stands_as(either)); scan != scans_.end()) {
+    if (const auto scan = scans_.find(stands_as(either));
+        scan != scans_.end() && !scan->second.hint_reason.empty()) {
       scan->second.hint_reason.clear();
+      scan->second.tried_on.clear();  // by its hint alone
     }
   }
   hints_.erase(hint);
+  retry(job);
 }
 
 bool ScanModel::follow_hint(int id, JobContext& job) {

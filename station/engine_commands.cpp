@@ -274,7 +274,7 @@ Result<std::vector<StationScan>> Engine::Impl::obey(const OperatorCommand& comma
     const Status status = record_hint_withdrawn(*store, withdraw->id);
     if (status) {
       word.hints.erase(withdraw->id);
-      registrar.clear_hint(withdraw->id);
+      registrar.clear_hint(withdraw->id, job);
     }
     return done(status, withdraw->id, "has no hint any more");
   }

@@ -149,7 +149,8 @@ TEST(Hints, AWrongWordIsNeverBelieved) {
     EXPECT_THAT(pose.reason, HasSubstr("the hint leads to no certain pose"));
     ASSERT_TRUE(registrar.finalize(job));
   }
-  registrar.clear_hint(1);
+  registrar.clear_hint(1, job);
+  EXPECT_EQ(pose_in(registrar, 1).status, PoseStatus::kRegistered) << pose_in(registrar, 1).reason;
   EXPECT_EQ(registrar.add(1, scanned(surface, truth, 9), nullptr, job).status, PoseStatus::kRegistered);
 }
 
