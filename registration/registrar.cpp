@@ -43,6 +43,7 @@ std::vector<ScanPose> Registrar::poses() const {
 
 bool Registrar::remove(int id, JobContext& job) {
   const bool there = state_->remove(id, job);
+  state_->settle_scale(job);
   state_->put_out_faulty(job);
   return there;
 }

@@ -141,6 +141,23 @@ void ScanModel::rescale(double scale_mm) {
   }
 }
 
+void ScanModel::settle_scale(JobContext& job) {
+  const Scan* largest = nullptr;
+  for (const auto& [id, scan] : scans_) {
+    if (scan.usable && (largest == nullptr || scan.own_scale_mm > largest->own_scale_mm)) {
+      largest = &scan;
+    }
+  }
+  if (largest == nullptr) {
+    scale_mm_ = 0;
+    first_spacing_mm_ = 0;
+  } else if (scale_mm_ > kMuchLarger * largest->own_scale_mm) {
+    first_spacing_mm_ = largest->own_spacing_mm;
+    rescale(largest->own_scale_mm);
+    retry(job);
+  }
+}
+
 bool ScanModel::is_all_apart() const {
   return std::ranges::all_of(scans_,
                              [&](const auto& item) { return members(item.second.group).size() <= 1; });

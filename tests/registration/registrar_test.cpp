@@ -355,6 +355,29 @@ TEST(Registrar, WhatOnlyTheScanTakenOutConnectedIsNotRegisteredAnyMore) {
   EXPECT_LT(error_mm(poses[1], poses[0], scans.truth, {}), 0.02);
 }
 
+/// The table, where the first scan was not clipped: what it showed is no measure for the tablets after it.
+TEST(Registrar, WhatWasTakenOutIsNoMeasureForTheOthers) {
+  FieldScan table;
+  table.spacing_mm = 3.0;
+  table.half_mm = table.high_x_mm = table.high_y_mm = 400;
+  table.low_x_mm = table.low_y_mm = -400;
+  FieldScan tablet;
+  tablet.seed = 2;
+  const auto surface = bumpy(23);
+  const RigidTransform truth = pose_of(8, 4, 40, {1, -2, 0});
+  Registrar registrar;
+  JobContext job;
+  registrar.add(0, share(scan_field(bumpy(99), {}, table)), nullptr, job);
+  registrar.add(1, share(scan_field(surface, {}, tablet)), nullptr, job);
+  ASSERT_TRUE(registrar.remove(0, job));
+  tablet.seed = 9;
+  registrar.add(2, share(scan_field(surface, truth, tablet)), nullptr, job);
+  ASSERT_TRUE(registrar.finalize(job));
+  for (const ScanPose& pose : registrar.poses()) {
+    EXPECT_EQ(pose.status, PoseStatus::kRegistered) << pose.id << pose.reason;
+  }
+}
+
 TEST(Registrar, ALockedScanThatComesBackIsNoReasonToGoOnWhenStopped) {
   Bridged scans(0.5);
   const RigidTransform before = scans.registrar.poses()[2].model_from_scanner;
