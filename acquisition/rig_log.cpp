@@ -3,6 +3,7 @@
 #include "acquisition/rig_log.h"
 
 #include "acquisition/device_uri.h"
+#include "acquisition/rig_scan.h"
 #include "core/number_text.h"
 #include "formats/atomic_file.h"
 #include "formats/calibration_json.h"
@@ -40,7 +41,18 @@ std::optional<VerificationEntry> RigLog::last() const {
   if (!lines || lines->entries.empty() || lines->entries.back().calibration != as_it_stands) {
     return std::nullopt;
   }
-  return lines->entries.back();
+  const VerificationEntry* latest = &lines->entries.back();
+  if (!days_since(latest->when)) {
+    return *latest;
+  }
+  // Whoever looks for what went wrong measures an earlier scan once more: it says nothing of the rig since.
+  for (const VerificationEntry& entry : lines->entries) {
+    const bool of_it = entry.calibration == as_it_stands && days_since(entry.when).has_value();
+    if (of_it && entry.when > latest->when) {
+      latest = &entry;
+    }
+  }
+  return *latest;
 }
 
 std::optional<std::filesystem::path> rig_file_of(const std::string& device_uri) {

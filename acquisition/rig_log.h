@@ -22,7 +22,8 @@ struct RigLog {
   std::string rig_name;       ///< of the rig.toml; empty where a calibration was named
 
   [[nodiscard]] bool of_range_camera() const { return verified.extension() == ".toml"; }
-  /// The latest line, if it is of the rig as it stands. A log that cannot be read says nothing.
+  /// Of the lines, if the last one is of the rig as it stands: the one whose scan is the latest, of those of
+  /// one scan the last; the last line where that says no time. A log that cannot be read says nothing.
   [[nodiscard]] std::optional<VerificationEntry> last() const;
 };
 

@@ -76,6 +76,21 @@ TEST_F(LogOfARig, RemindsUnlessItWasVerifiedToday) {
   EXPECT_NE(reminder().find("nobody knows"), std::string::npos);
 }
 
+TEST_F(LogOfARig, AnEarlierScanThatIsMeasuredLaterTakesNoFailureBack) {
+  write(kAlong);
+  const std::string yesterday = time_of(0.9);
+  const std::string today = time_of(0.1);
+  log(today, false);
+  log(yesterday);
+  EXPECT_NE(reminder().find("FAILED its last verification (" + today), std::string::npos) << reminder();
+  EXPECT_FALSE(last_verification(toml_).has_value()) << "none that a checklist may show";
+  log(today);
+  EXPECT_EQ(reminder(), "none") << "the same scan, judged once more";
+  log(time_of(-365), false);
+  log(today);
+  EXPECT_EQ(reminder(), "none") << "a clock that was wrong";
+}
+
 TEST_F(LogOfARig, OfARangeCameraLiesBesideItsRigFileAndHoldsWhileCameraAndMotionAreTheSame) {
   write(kAlong);
   const Result<RigLog> of = rig_log_of(toml_);
