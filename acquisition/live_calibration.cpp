@@ -206,13 +206,17 @@ Result<LiveCalibration::Taken> LiveCalibration::pose_while_streaming(const JobCo
   const std::size_t number = plan_.set.poses.size();
   CalibrationView view;
   if (plan_.set.motion == MotionKind::kGalvanometer) {
-    // A third of the poses each, so that the axis shows.
+    // A third of the poses each, so that the axis shows; where its own steps take it, as a scan says it.
     const double mirror = plan_.from + 0.5 * (plan_.to - plan_.from) * static_cast<double>(number % 3);
     if (Status moved = stage_.move({static_cast<std::uint32_t>(plan_.axis), mirror, plan_.speed, false});
         !moved) {
       return std::unexpected(moved.error());
     }
-    view.mirror_position = mirror;
+    const Result<double> there = position_of(stage_, static_cast<std::size_t>(plan_.axis));
+    if (!there) {
+      return std::unexpected(there.error());
+    }
+    view.mirror_position = *there;
   }
   const Result<GrayImage> board = picture(false, plan_.board_exposure_us, job);
   if (!board) {

@@ -259,6 +259,31 @@ TEST_F(Live, TheStageGoesAsFastAsTheRigSays) {
   EXPECT_EQ(bench_.speed, 1.5);
 }
 
+/// A scan goes by where the mirror says it is.
+TEST_F(Live, AMirrorIsCalibratedWhereItsStepsTakeIt) {
+  sim::FrameRigOptions size;
+  size.width = 720;
+  size.height = 400;
+  size.motion = MotionKind::kGalvanometer;
+  bench_.truth = sim::frame_rig(size);
+  bench_.can_home = true;
+  bench_.whole_step = 0.005;
+  plan_.set.motion = MotionKind::kGalvanometer;
+  plan_.from = -0.0112;
+  plan_.to = 0.0112;
+  Result<LiveCalibration> live = start();
+  ASSERT_TRUE(live.has_value()) << live.error().line();
+  held_ = poses(1)[0];
+  const auto taken = live->take_pose(JobContext{});
+  ASSERT_TRUE(taken.has_value()) << taken.error().line();
+  ASSERT_TRUE(taken->used) << taken->said;
+  const std::string list = (plan_.folder / "calibration.toml").string();
+  const auto set = parse_calibration_set(read_whole_file(list).value(), list);
+  ASSERT_TRUE(set.has_value()) << set.error().line();
+  ASSERT_EQ(set->poses.size(), 1U);
+  EXPECT_NEAR(set->poses[0].mirror_rad, -0.01, 1e-9);
+}
+
 TEST_F(Live, ACancelledOneEndsTheMoveAndLightsNothing) {
   Result<LiveCalibration> live = start();
   ASSERT_TRUE(live.has_value());

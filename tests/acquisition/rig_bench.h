@@ -4,6 +4,7 @@
 
 #include <atomic>
 #include <chrono>
+#include <cmath>
 #include <cstdint>
 #include <cstdio>
 #include <functional>
@@ -41,6 +42,7 @@ struct RigBench {
   bool mute = false;           ///< tells of no axis
   bool can_home = false;
   double speed = 0;               ///< that the last move was asked for
+  double whole_step = 0;          ///< between which it cannot stand; 0: anywhere
   bool burns_on = false;          ///< the controller obeys no more once its laser is lit
   bool deaf = false;              ///< it does not answer to a stop
   std::atomic<bool> far = false;  ///< a move ends by nothing but a stop
@@ -236,7 +238,9 @@ inline const dubsar_driver& stage_driver() {
         }
         return DUBSAR_CANCELLED;
       }
-      bench.position = bench.stuck ? bench.position : move->position;
+      const double step = bench.whole_step;
+      const double there = step > 0 ? step * std::round(move->position / step) : move->position;
+      bench.position = bench.stuck ? bench.position : there;
       bench.speed = move->speed;
       return DUBSAR_OK;
     };
