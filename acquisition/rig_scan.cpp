@@ -290,10 +290,12 @@ Status RigScanner::start_view() {
     return started;
   }
   Status lit = light_view(true);
-  if (!lit) {
-    [[maybe_unused]] const Status said = camera_.stop_frames();
+  if (lit) {
+    return lit;
   }
-  return lit;
+  [[maybe_unused]] const Status said = camera_.stop_frames();
+  // It may have heard and not answered, and nobody ends a view that did not begin.
+  return LaserGuard(stage_, static_cast<std::uint32_t>(file_.laser)).off(std::move(lit));
 }
 
 Status RigScanner::stop_view() {

@@ -44,6 +44,7 @@ struct RigBench {
   double speed = 0;               ///< that the last move was asked for
   double whole_step = 0;          ///< between which it cannot stand; 0: anywhere
   bool burns_on = false;          ///< the controller obeys no more once its laser is lit
+  bool lights_unsaid = false;     ///< it lights its laser and does not answer
   bool deaf = false;              ///< it does not answer to a stop
   std::atomic<bool> far = false;  ///< a move ends by nothing but a stop
   int stale = 0;                  ///< frames of long ago that the camera still holds
@@ -266,6 +267,10 @@ inline const dubsar_driver& stage_driver() {
       }
       bench_of(device).laser = power;
       bench_of(device).asked += power > 0 ? 'L' : 'D';
+      if (bench_of(device).lights_unsaid && power > 0) {
+        return plugin::report(error, DUBSAR_DEVICE, "the controller does not answer", "bench",
+                              "see to its cable");
+      }
       return DUBSAR_OK;
     };
     out.stop = [](dubsar_device* device, dubsar_error* error) -> std::int32_t {

@@ -40,6 +40,22 @@ TEST_F(RigLaser, ALaserThatCannotBePutOffIsToldAndTheRowsAreKept) {
   EXPECT_EQ(made->scan(few).error().kind, ErrorKind::kDevice);
 }
 
+/// Whoever looks through the camera is told, and does not end what did not begin.
+TEST_F(RigLaser, AViewThatDoesNotBeginLeavesTheLaserOff) {
+  Result<RigScanner> made = make();
+  ASSERT_TRUE(made.has_value());
+  bench.lights_unsaid = true;
+  const Status unsaid = made->start_view();
+  ASSERT_FALSE(unsaid.has_value());
+  EXPECT_NE(unsaid.error().what.find("does not answer"), std::string::npos) << unsaid.error().line();
+  EXPECT_EQ(unsaid.error().what.find("laser may"), std::string::npos) << unsaid.error().line();
+  EXPECT_EQ(bench.laser, 0);
+  bench.burns_on = true;
+  const Status burns = made->start_view();
+  ASSERT_FALSE(burns.has_value());
+  EXPECT_NE(burns.error().what.find("the laser may still be on"), std::string::npos) << burns.error().line();
+}
+
 TEST_F(RigLaser, AFailureLeavesTheRowsAndTheLaserOff) {
   Result<RigScanner> made = make();
   ASSERT_TRUE(made.has_value());
