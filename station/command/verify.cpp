@@ -184,7 +184,8 @@ int print_session(const std::string& path, const Found& found, const std::option
              {"extra", report.extra},
              {"set_aside", report.set_aside},
              {"behind", errors_json(found.behind)},
-             {"sign_offs", sign_offs}};
+             {"sign_offs", sign_offs},
+             {"damaged_sign_offs", errors_json(signed_off.damage)}};
     if (mended) {
       out["repair"] = {{"notes", mended->notes},         {"records", mended->records},
                        {"restored", mended->restored},   {"made_anew", mended->made_anew},

@@ -9,6 +9,7 @@
 #include <iterator>
 #include <random>
 
+#include "acquisition/session_store.h"
 #include "core/shell_word.h"
 #include "formats/corrections_json.h"
 #include "formats/self_checked.h"
@@ -86,6 +87,19 @@ TEST_F(Verify, EveryFileOfAnUnharmedSessionIsWhole) {
   EXPECT_TRUE(report["unrecorded"].empty() && report["extra"].empty());
   const Outcome quiet = run_command({"-q", "verify", session_.string()});
   EXPECT_EQ(quiet.err, "") << "no progress either";
+}
+
+TEST_F(Verify, ASignOffThatCannotBeReadIsNamedInTheAnswerToo) {
+  EXPECT_THAT(verify(0)["damaged_sign_offs"], IsEmpty());
+  {
+    Result<SessionStore> store = SessionStore::open_or_create(session_);
+    ASSERT_TRUE(store) << store.error().line();
+    ASSERT_TRUE(store->append_event("signed", "no json"));
+  }
+  const nlohmann::json told = verify(1);
+  EXPECT_EQ(told["ok"], true) << "every file is what was stored";
+  ASSERT_EQ(told["damaged_sign_offs"].size(), 1U) << told.dump();
+  EXPECT_THAT(told["damaged_sign_offs"][0]["where"].get<std::string>(), HasSubstr("event "));
 }
 
 TEST_F(Verify, DamagedMissingAndForeignFilesAreNamed) {
