@@ -3,6 +3,7 @@
 #include "acquisition/calibration_folder.h"
 
 #include <algorithm>
+#include <cstdio>
 #include <utility>
 
 #include "acquisition/stripe_points.h"
@@ -96,6 +97,23 @@ Result<CalibrationPictures> look_at_pictures(const fs::path& folder, const Calib
   }
   job.progress("board", 1);
   return out;
+}
+
+std::string numbered_picture(const char* stem, std::size_t number, const char* rest) {
+  char text[64];
+  std::snprintf(text, sizeof text, "%s_%02zu%s.png", stem, number, rest);
+  return text;
+}
+
+std::size_t free_picture_number(const fs::path& folder, const char* stem, std::size_t from) {
+  const auto is_there = [&](const char* rest) {
+    std::error_code ignored;
+    return fs::exists(folder / numbered_picture(stem, from, rest), ignored);
+  };
+  while (is_there("") || is_there("_laser") || is_there("_dark")) {
+    ++from;
+  }
+  return from;
 }
 
 Result<CalibrationSet> set_of_folder(const fs::path& folder, const std::string& board) {

@@ -2,6 +2,7 @@
 // Copyright The Dubsar developers
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -28,6 +29,14 @@ struct CalibrationPictures {
 /// The set for a folder without a calibration.toml: every picture in it shows the board, in name order.
 [[nodiscard]] Result<CalibrationSet> set_of_folder(const std::filesystem::path& folder,
                                                    const std::string& board);
+
+/// "pose_07_laser.png": `stem`, two digits or more, and `rest`.
+[[nodiscard]] std::string numbered_picture(const char* stem, std::size_t number, const char* rest);
+
+/// The first number from `from` on of which no picture lies in `folder`: a list may have been written by
+/// hand, or have lost some of its lines, and what is taken next is written over nothing.
+[[nodiscard]] std::size_t free_picture_number(const std::filesystem::path& folder, const char* stem,
+                                              std::size_t from);
 
 /// The stripe in a picture with the laser on, the same light without it (or nothing) subtracted: image
 /// points.

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <cstdio>
 #include <cstdlib>
 #include <string_view>
 #include <utility>
@@ -30,12 +29,6 @@ namespace fs = std::filesystem;
 constexpr double kMovedPx = 0.5;  // corners of a board that was held still stay within this
 constexpr int kLeastStops = 3;
 constexpr std::size_t kFirstPoses = 4;  // before a camera can be told at all
-
-std::string numbered(const char* stem, std::size_t number, const char* rest) {
-  char text[64];
-  std::snprintf(text, sizeof text, "%s_%02zu%s.png", stem, number, rest);
-  return text;
-}
 
 /// How far the corners that both have lie apart, the median; nothing without such corners.
 std::optional<double> moved_px(const BoardView& a, const BoardView& b) {
@@ -222,8 +215,9 @@ Result<LiveCalibration::Taken> LiveCalibration::pose_while_streaming(const JobCo
   if (!board) {
     return std::unexpected(board.error());
   }
-  CalibrationSet::Pose names{numbered("pose", number, ""), numbered("pose", number, "_laser"),
-                             numbered("pose", number, "_dark"), view.mirror_position};
+  const std::size_t free = free_picture_number(plan_.folder, "pose", number);
+  CalibrationSet::Pose names{numbered_picture("pose", free, ""), numbered_picture("pose", free, "_laser"),
+                             numbered_picture("pose", free, "_dark"), view.mirror_position};
   Result<BoardView> seen = find_board(board->view(), board_, names.board);
   if (!seen) {
     return Taken{false, seen.error().what};
@@ -288,6 +282,7 @@ Result<LiveCalibration::Taken> LiveCalibration::stops_while_streaming(const JobC
   std::vector<CalibrationView> views;
   std::vector<CalibrationSet::Stop> stops;
   std::vector<GrayImage> pictures;
+  std::size_t free = plan_.set.stops.size();
   for (int i = 0; i < plan_.stops; ++i) {
     job.progress("stage", static_cast<double>(i) / plan_.stops);
     const double there = plan_.from + (plan_.to - plan_.from) * i / std::max(1, plan_.stops - 1);
@@ -302,7 +297,8 @@ Result<LiveCalibration::Taken> LiveCalibration::stops_while_streaming(const JobC
     if (!picture_now) {
       return std::unexpected(picture_now.error());
     }
-    CalibrationSet::Stop stop{numbered("stage", plan_.set.stops.size() + stops.size(), ""), name, *position};
+    free = free_picture_number(plan_.folder, "stage", free);
+    CalibrationSet::Stop stop{numbered_picture("stage", free, ""), name, *position};
     Result<BoardView> seen = find_board(picture_now->view(), board_, stop.board);
     if (!seen) {
       continue;
@@ -313,6 +309,7 @@ Result<LiveCalibration::Taken> LiveCalibration::stops_while_streaming(const JobC
     view.stage_position = stop.position;
     views.push_back(std::move(view));
     stops.push_back(std::move(stop));
+    ++free;
     pictures.push_back(std::move(*picture_now));
   }
   const std::string said =

@@ -2,8 +2,6 @@
 // Copyright The Dubsar developers
 #include "station/calibration_run.h"
 
-#include <fmt/format.h>
-
 #include <cmath>
 
 #include "acquisition/calibration_folder.h"
@@ -205,20 +203,26 @@ Result<std::string> add_calibration_shot(const fs::path& folder, const Calibrati
     return fail(ErrorKind::kUsage, "there is no pose of the board yet", folder.string(),
                 "take a picture of the board first, and leave it where it is");
   }
+  const auto free_name = [&](const char* stem, std::size_t from) {
+    return numbered_picture(stem, free_picture_number(folder, stem, from), "");
+  };
+  const auto beside_board = [&](const char* rest) {
+    return fs::path(set.poses.back().board).replace_extension().string() + rest;
+  };
   std::string name;
   switch (shot) {
     case CalibrationShot::kBoard:
-      name = fmt::format("pose_{:02d}.png", set.poses.size());
+      name = free_name("pose", set.poses.size());
       set.poses.push_back({name, {}, {}, mirror ? position : 0.0});
       break;
     case CalibrationShot::kLaser:
-      name = set.poses.back().laser = fmt::format("pose_{:02d}_laser.png", set.poses.size() - 1);
+      name = set.poses.back().laser = beside_board("_laser.png");
       break;
     case CalibrationShot::kDark:
-      name = set.poses.back().dark = fmt::format("pose_{:02d}_dark.png", set.poses.size() - 1);
+      name = set.poses.back().dark = beside_board("_dark.png");
       break;
     case CalibrationShot::kStop:
-      name = fmt::format("stage_{:02d}.png", set.stops.size());
+      name = free_name("stage", set.stops.size());
       set.stops.push_back({name, "board", position});
       break;
   }

@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <chrono>
 #include <cmath>
 #include <thread>
@@ -159,6 +160,35 @@ TEST_F(Live, GoesOnWithWhatWasTakenAndRefusesAnothersPictures) {
   const Result<LiveCalibration> another = start();
   ASSERT_FALSE(another.has_value());
   EXPECT_EQ(another.error().kind, ErrorKind::kBadInput);
+}
+
+/// A list that somebody wrote counts as it likes, and may have lost some of its lines.
+TEST_F(Live, WhatIsTakenIsWrittenOverNoPicture) {
+  std::filesystem::create_directories(plan_.folder);
+  const std::array<std::filesystem::path, 2> others{plan_.folder / "pose_00_laser.png",
+                                                    plan_.folder / "stage_01.png"};
+  for (const std::filesystem::path& other : others) {
+    ASSERT_TRUE(write_file_atomically(other, "a person's"));
+  }
+  Result<LiveCalibration> live = start();
+  ASSERT_TRUE(live.has_value()) << live.error().line();
+  held_ = poses(1)[0];
+  ASSERT_TRUE(live->take_pose(JobContext{})->used);
+  carried_ = true;
+  ASSERT_TRUE(live->take_stops(JobContext{})->used);
+  const std::string list = (plan_.folder / "calibration.toml").string();
+  const auto set = parse_calibration_set(read_whole_file(list).value(), list);
+  ASSERT_TRUE(set.has_value()) << set.error().line();
+  ASSERT_EQ(set->poses.size(), 1U);
+  EXPECT_EQ(set->poses[0].board, "pose_01.png");
+  EXPECT_EQ(set->poses[0].dark, "pose_01_dark.png");
+  ASSERT_EQ(set->stops.size(), 4U);
+  EXPECT_EQ(set->stops[0].board, "stage_00.png");
+  EXPECT_EQ(set->stops[1].board, "stage_02.png");
+  EXPECT_EQ(set->stops[3].board, "stage_04.png");
+  for (const std::filesystem::path& other : others) {
+    EXPECT_EQ(read_whole_file(other).value_or(""), "a person's") << other;
+  }
 }
 
 TEST_F(Live, GoesOnWithTheOptionsThatAreGivenAnew) {
