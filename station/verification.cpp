@@ -38,7 +38,18 @@ Result<ArtefactScan> scan_of(const std::string& uri, JobContext& job) {
   for (const std::string& remark : source->record().remarks) {
     log_warning((*grid)->source + ": " + remark);
   }
-  return ArtefactScan{std::move(**grid), source->capabilities().finite};
+  const bool recorded = source->capabilities().finite;
+  if (recorded) {  // a verdict by the first one would be taken for one by all of them
+    const Result<std::optional<RangeGrid>> another = source->next({}, job);
+    if (!another && another.error().kind == ErrorKind::kCancelled) {
+      return std::unexpected(another.error());
+    }
+    if (!another || *another) {
+      return fail(ErrorKind::kUsage, "there is more than one scan in it", uri,
+                  "name the file of one, and verify each by itself");
+    }
+  }
+  return ArtefactScan{std::move(**grid), recorded};
 }
 
 /// When it was scanned, where it says a time that can be.

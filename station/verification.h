@@ -15,7 +15,7 @@ namespace dubsar {
 
 struct VerifyRequest {
   std::string artefact;  ///< artefact.toml
-  std::string scan;      ///< of the artefact: a file, or a device that takes it
+  std::string scan;      ///< of the artefact: a file with one scan, or a device that takes it
   /// That is verified, or the rig.toml of a range camera; the outcome goes into the log beside it. Empty:
   /// into none.
   std::string calibration;

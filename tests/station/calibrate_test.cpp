@@ -212,6 +212,17 @@ TEST_F(VerifiedWhen, AGridThatSaysItsTimeCountsFromThen) {
   EXPECT_EQ(log()[0].when, "2026-01-03T00:26:40Z");
 }
 
+TEST_F(VerifiedWhen, AFolderOfSeveralScansIsNotJudgedByItsFirst) {
+  fs::create_directories(at("scans"));
+  ASSERT_TRUE(write_grid_file(at("scans/a.grid"), plate(1'767'400'000'000'000'000)));
+  EXPECT_EQ(verify("scans").status, 0) << "a folder of one is that one";
+  ASSERT_TRUE(write_grid_file(at("scans/b.grid"), plate(1'767'400'060'000'000'000)));
+  const Outcome several = verify("scans");
+  EXPECT_EQ(several.status, 2);
+  EXPECT_THAT(several.err, HasSubstr("there is more than one scan in it"));
+  EXPECT_THAT(log(), SizeIs(1));
+}
+
 TEST_F(VerifiedWhen, AFileWithoutATimeCountsFromNowAndThatIsSaid) {
   ASSERT_TRUE(write_grid_ply(at("plate.ply"), plate(0)));
   const Outcome outcome = verify("plate.ply");
