@@ -4,16 +4,21 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Geometry>
 #include <cstdio>
 #include <memory>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "archive/pin_layout_picture.h"
 #include "archive/png.h"
 #include "core/tablet_frame.h"
+#include "core/units.h"
 #include "formats/atomic_file.h"
-#include "formats/mesh_io.h"
 #include "planning/pin_layout.h"
 #include "station/command/command.h"
+#include "station/command/mesh_unit.h"
 #include "station/command/option_checks.h"
 #include "station/command/outputs.h"
 #include "station/command/size_option.h"
@@ -29,6 +34,7 @@ constexpr double kEdgeRadiusShare = 0.1;
 struct PinsArguments {
   std::string size;
   std::string mesh;
+  std::string unit;  ///< of the mesh
   std::string out;
   int count = 15;
   double triangulation_deg = 24.0;
@@ -39,7 +45,7 @@ nlohmann::ordered_json triple(const Eigen::Vector3d& v) {
 }
 
 nlohmann::ordered_json layout_json(const PinLayout& layout, const std::string& warning,
-                                   const PinsArguments& arguments) {
+                                   const std::string& unit_assumed, const PinsArguments& arguments) {
   nlohmann::ordered_json json{{"unit", "mm"},
                               {"frame", "tablet"},
                               {"size_mm", triple(layout.size_mm)},
@@ -58,6 +64,9 @@ nlohmann::ordered_json layout_json(const PinLayout& layout, const std::string& w
                             {"arm", triple(pin.pose.arm)}});
   }
   json["warning"] = warning.empty() ? nlohmann::ordered_json() : nlohmann::ordered_json(warning);
+  if (!unit_assumed.empty()) {
+    json["unit_assumed"] = unit_assumed;
+  }
   if (!arguments.out.empty()) {
     json["picture"] = arguments.out;
   }
@@ -85,6 +94,7 @@ Status write_picture(const PinLayout& layout, const Mesh& tablet, const PinsArgu
 Result<int> pins(const PinsArguments& arguments, CommandContext& context) {
   TabletHull hull;
   Mesh tablet;
+  std::string unit_assumed;
   if (arguments.mesh.empty()) {
     const Result<Eigen::Vector3d> parsed = parse_size_mm(arguments.size);
     if (!parsed) {
@@ -95,14 +105,15 @@ Result<int> pins(const PinsArguments& arguments, CommandContext& context) {
     hull = hull_of_box(size, radius_mm);
     tablet = box_mesh(size, radius_mm);
   } else {
-    Result<Mesh> read = read_mesh(arguments.mesh);
+    Result<MeshInItsUnit> read = read_mesh_in_its_unit(arguments.mesh, arguments.unit, context.job);
     if (!read) {
       return std::unexpected(read.error());
     }
-    face_outwards(&*read, arguments.mesh);
-    const RigidTransform tablet_from_model = tablet_frame(*read);
-    hull = hull_of_mesh(*read, tablet_from_model);
-    tablet = std::move(*read);
+    unit_assumed = read->unit_assumed;
+    tablet = std::move(read->mesh);
+    face_outwards(&tablet, arguments.mesh);
+    const RigidTransform tablet_from_model = tablet_frame(tablet);
+    hull = hull_of_mesh(tablet, tablet_from_model);
     Eigen::AlignedBox3d box;
     for (Eigen::Vector3f& p : tablet.positions) {
       const Eigen::Vector3d q = tablet_from_model * p.cast<double>();
@@ -141,7 +152,7 @@ Result<int> pins(const PinsArguments& arguments, CommandContext& context) {
     std::fprintf(stderr, "warning: %s\n", warning.c_str());
   }
   if (context.json) {
-    CommandContext::print(layout_json(*layout, warning, arguments));
+    CommandContext::print(layout_json(*layout, warning, unit_assumed, arguments));
     return 0;
   }
   std::printf("at least %d of %zu pins seen from every side (%.1f on average; %d proven for every view)\n",
@@ -163,6 +174,10 @@ void add_pins(CLI::App& app, Action& chosen) {
   CLI::Option* mesh =
       verb->add_option("--mesh", arguments->mesh, "a mesh of the tablet, instead of its size");
   size->excludes(mesh);
+  verb->add_option("--unit", arguments->unit,
+                   "what the mesh's numbers are; default: the file's own word, else by its size")
+      ->check(CLI::IsMember(std::vector<std::string>(kLengthUnits.begin(), kLengthUnits.end())))
+      ->needs(mesh);
   verb->add_option("-o,--out", arguments->out, "write the picture here (PNG)")->check(ends_as(".png"));
   verb->add_option("--count", arguments->count, "pins, at most 15")
       ->check(in_range(3, 15))

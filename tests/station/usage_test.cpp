@@ -5,7 +5,12 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <string>
+#include <vector>
+
 #include "build_paths.h"
+#include "formats/atomic_file.h"
 #include "formats/pins_json.h"
 #include "formats/poses_json.h"
 #include "formats/wedges_json.h"
@@ -190,6 +195,27 @@ TEST(CommandUsage, AFolderIsNoScriptAndNoOutput) {
 TEST(CommandUsage, APictureOfPinsIsAPng) {
   EXPECT_THAT(run_command({"pins", "--size", "50x40x20", "-o", "x.gif"}).err,
               HasSubstr("does not end in .png"));
+}
+
+/// A rough mesh from another program, in centimetres.
+TEST(CommandUsage, PinsAreNotPutRoundATabletOfTheWrongUnit) {
+  const test::TemporaryFolder folder;
+  const std::string mesh = (folder.path() / "rough.obj").string();
+  ASSERT_TRUE(write_file_atomically(mesh,
+                                    "v 0 0 0\nv 3 0 0\nv 3 2 0\nv 0 2 0\nv 0 0 1\nv 3 0 1\nv 3 2 1\nv 0 2 1\n"
+                                    "f 1 4 3\nf 1 3 2\nf 5 6 7\nf 5 7 8\nf 1 2 6\nf 1 6 5\nf 2 3 7\nf 2 7 6\n"
+                                    "f 3 4 8\nf 3 8 7\nf 4 1 5\nf 4 5 8\n"));
+  const Outcome unsaid = run_command({"pins", "--mesh", mesh, "--count", "3", "--json"});
+  EXPECT_EQ(unsaid.status, 2) << unsaid.out;
+  EXPECT_THAT(unsaid.err, HasSubstr("say what its numbers are: repeat it with --unit"));
+  const Outcome said = run_command({"pins", "--mesh", mesh, "--unit", "cm", "--count", "3", "--json"});
+  ASSERT_EQ(said.status, 0) << said.err;
+  std::vector<double> sides = said.json()["size_mm"].get<std::vector<double>>();
+  std::ranges::sort(sides);
+  ASSERT_THAT(sides, SizeIs(3));
+  EXPECT_NEAR(sides[0], 10, 0.1);
+  EXPECT_NEAR(sides[2], 30, 0.1);
+  EXPECT_FALSE(said.json().contains("unit_assumed"));
 }
 
 TEST(CommandUsage, WhatIsNoNumberPassesNoLimit) {
