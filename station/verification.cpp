@@ -171,7 +171,8 @@ Result<VerifyOutcome> verify_rig(const VerifyRequest& request, JobContext& job) 
   out.is = std::move(*is);
   const std::optional<std::time_t> when = time_of(scan->grid);
   out.time_unknown = scan->recorded && !when;
-  out.entry.when = when ? utc_text(*when) : utc_now();
+  // What is scanned now is of now, whatever a camera's own clock says.
+  out.entry.when = scan->recorded && when ? utc_text(*when) : utc_now();
   out.entry.artefact = out.artefact.name;
   out.entry.certificate = out.artefact.certificate;
   out.entry.error_mm = out.is.worst_mm();
