@@ -133,8 +133,12 @@ Result<std::string> take_pictures(const LiveOptions& options, const std::string&
     }
     const Result<LiveCalibration::Taken> taken =
         line->empty() ? live->take_pose(context.job) : live->take_stops(context.job);
-    // A camera or a stage that is gone can be plugged in again: what was taken is kept either way.
-    if (!taken && taken.error().kind != ErrorKind::kDevice && taken.error().kind != ErrorKind::kCancelled) {
+    // A camera or a stage that is gone can be plugged in again, one with a switch be homed, and what this rig
+    // does not do be left: what was taken is kept either way.
+    const auto ends_it = [](ErrorKind kind) {
+      return kind != ErrorKind::kDevice && kind != ErrorKind::kUsage && kind != ErrorKind::kCancelled;
+    };
+    if (!taken && ends_it(taken.error().kind)) {
       return std::unexpected(taken.error());
     }
     if (context.job.cancelled()) {
