@@ -154,19 +154,24 @@ void append_scene(GltfReading& reading, double mm, const JobContext* job, Mesh& 
   const JsonNode& root = reading.root;
   const std::size_t node_count = root.at("nodes").size();
   std::vector<Placed> open;
+  std::size_t reached = 0;
+  // Counted here and not where they are visited: a list that names one node a million times would take its
+  // memory at each visit.
+  const auto reach = [&](const JsonNode& node, const Eigen::Affine3d& scene_from_parent) {
+    if (++reached > node_count) {
+      node.complain("is the child of more than one node");
+    } else {
+      open.push_back({node, scene_from_parent * transform_of(node)});
+    }
+  };
   const Eigen::Affine3d scaled(Eigen::Scaling(mm));
   for (const JsonNode& node : root_nodes(root)) {
-    open.push_back({node, scaled * transform_of(node)});
+    reach(node, scaled);
   }
   std::reverse(open.begin(), open.end());
-  std::size_t visited = 0;
   while (!open.empty() && !root.failed() && !is_stopped(job)) {
     const Placed placed = open.back();
     open.pop_back();
-    if (++visited > node_count) {
-      placed.node.complain("is the child of more than one node");
-      return;
-    }
     if (const auto number = placed.node.find("mesh")) {
       for (const JsonNode& primitive : gltf_entry(root, "meshes", *number).at("primitives").items()) {
         append_primitive(reading, primitive, placed.scene_from_node, mesh);
@@ -176,8 +181,7 @@ void append_scene(GltfReading& reading, double mm, const JobContext* job, Mesh& 
     }
     if (const auto children = placed.node.find("children")) {
       for (const JsonNode& child : children->items()) {
-        const JsonNode node = gltf_entry(root, "nodes", child);
-        open.push_back({node, placed.scene_from_node * transform_of(node)});
+        reach(gltf_entry(root, "nodes", child), placed.scene_from_node);
       }
     }
   }

@@ -128,6 +128,25 @@ TEST(Claims, MeshesOfATrillionVertices) {
        glb(start + R"("accessors":[{"componentType":5126,"count":1000000000000,"type":"VEC3"}]})"));
 }
 
+/// Each visit of the node would take the memory of all of its children, which are the node again.
+TEST(Claims, ANodeThatIsItsOwnChildOverAndOver) {
+  constexpr int kTimes = 2000;
+  std::string nodes = R"({"children":[0)";
+  for (int k = 1; k < kTimes; ++k) {
+    nodes += ",0";
+  }
+  nodes += "]}";
+  for (int k = 1; k < kTimes; ++k) {
+    nodes += ",{}";
+  }
+  const std::string bytes =
+      join_glb(R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],"nodes":[)" + nodes + "]}",
+               std::string(16, '\0'));
+  EXPECT_NE(refusal("children.glb", [&] { return read_mesh_bytes(bytes, "children.glb"); })
+                .find("is the child of more than one node"),
+            std::string::npos);
+}
+
 /// What a Draco stream claims in its own head, and what its tables do, where the accessors agree.
 TEST(Claims, CompressedMeshesOfABillionFaces) {
   const auto glb = [](const std::string& draco, std::uint64_t vertices, std::uint64_t faces) {
