@@ -79,13 +79,13 @@ Result<PtxHeader> read_header(PtxText& file, const std::string& name) {
   TextScanner& text = file.text;
   std::array<std::int64_t, 2> sides{};
   for (std::int64_t& side : sides) {
-    const std::string word = text.word_here();
-    const std::size_t line = text.line_number();
+    text.skip_blanks();
+    const std::size_t start = text.position();
     if (!text.integer(side) || side < 0 || side > kMaxSide) {
-      return bad_input(name,
-                       "line " + std::to_string(line) + ": " + in_quotes(word) +
-                           " stands where a count from 1 to " + std::to_string(kMaxSide) + " belongs",
-                       kNoPtxMend);
+      text.seek(start);  // lines are counted from the file's first: not of each scan, but where it is said
+      return ptx_error(text, name,
+                       in_quotes(text.word_here()) + " stands where a count from 1 to " +
+                           std::to_string(kMaxSide) + " belongs");
     }
   }
   for (int i = 0; i < kHeaderNumbers; ++i) {

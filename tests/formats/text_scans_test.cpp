@@ -90,6 +90,20 @@ TEST(Ptx, ReadsSeveralScansAndCountsThem) {
 
 const std::string kPose = "0 0 0\n1 0 0\n0 1 0\n0 0 1\n1 0 0 0\n0 1 0 0\n0 0 1 0\n0 0 0 1\n";
 
+/// In a tenth of a second: were something done for each scan that goes through the file from its beginning,
+/// in a minute.
+TEST(Ptx, ManyScansTakeNoLongerEach) {
+  std::string many;
+  for (int scan = 0; scan < 50000; ++scan) {
+    many += "0\n0\n" + kPose;
+  }
+  many += kPtx;
+  const auto scans = read_scan_bytes(many, "many.ptx");
+  ASSERT_TRUE(scans) << line_of(scans);
+  EXPECT_EQ(scans->size(), 1U);
+  EXPECT_EQ(std::get<RangeGrid>(scans->front()).source, "many.ptx#50000");
+}
+
 TEST(Ptx, ANoReturnMayLeaveOutWhatFollows) {
   const auto scans = read_scan_bytes("1\n6\n" + kPose +
                                          "0 0 0 0\n0 0 0\n0 0.3 -5 0.5 9 8 7\n\n0 0 0\nnan nan nan\n"
