@@ -18,6 +18,7 @@ using namespace std::chrono_literals;
 /// A board that restarts when its line is opened needs a while.
 constexpr auto kBoot = 3500ms;
 constexpr auto kAskEvery = 500ms;
+constexpr int kInches = 13;      // $13: reports in inches, whatever unit commands have
 constexpr int kHoming = 22;      // $22
 constexpr int kLaserScale = 30;  // $30: S of full power
 constexpr int kSteps = 100;      // $100 + axis, per mm
@@ -320,7 +321,7 @@ class Grbl : public Firmware {
       return std::nullopt;
     }
     const double offset = report.machine || axis >= offset_.size() ? 0.0 : offset_[axis];
-    return given[axis] + offset;
+    return (given[axis] + offset) * (setting(kInches, 0) != 0 ? 25.4 : 1.0);
   }
 
   LineTalk talk_;

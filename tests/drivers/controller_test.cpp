@@ -205,6 +205,21 @@ TEST(Controller, GrblMayStandAtItsSwitchBeyondItsLimits) {
   EXPECT_EQ(axis.reach, std::pair(-200.0, 200.0));  // its switch may be at either end
 }
 
+/// With $13=1 all positions of its reports are, that of the work offset too.
+TEST(Controller, GrblMayReportInches) {
+  for (const char* report : {"<Idle|MPos:-2.0000,0.0000,0.0000>\r\n",
+                             "<Idle|WPos:-3.0000,0.0000,0.0000|WCO:1.0000,0.0000,0.0000>\r\n"}) {
+    BenchLink link;
+    link.answers = {
+        {"\x18", kBanner}, {"$$\n", "$13=1\r\n$22=1\r\n$110=3000\r\n$130=200\r\nok\r\n"}, {"?", report}};
+    const std::unique_ptr<Firmware> firmware = make_grbl(link, {AxisWish{}}, "bench");
+    ASSERT_TRUE(firmware->connect());
+    const Result<Position> now = firmware->read();
+    ASSERT_TRUE(now) << now.error().line();
+    EXPECT_NEAR(now->axes.front(), -50.8, 1e-9) << report;
+  }
+}
+
 TEST(Controller, ATurntableKeepsTheLimitsThatItIsGiven) {
   BenchLink link;
   link.answers = {{"\x18\r\n", "Horus 0.2 ['$' for help]\r\n"},
