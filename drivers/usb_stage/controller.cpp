@@ -104,12 +104,19 @@ bool Controller::drop() {
   firmware_.reset();
   link_.reset();
   std::ranges::fill(power_, 0.0);
+  tell_guard();
   last_.reset();
   unheard_ = unheard_ || (lost_at_work_ && !heard);
   if (unheard_) {
     let_guard_seek();
   }
   return heard;
+}
+
+void Controller::tell_guard() {
+  if (guard_) {
+    guard_->lit(std::ranges::any_of(power_, [](double power) { return power > 0; }));
+  }
 }
 
 void Controller::let_guard_seek() {
@@ -247,12 +254,14 @@ Status Controller::set_laser(std::size_t laser, double power) {
   }
   const double before = power_[laser];
   power_[laser] = std::max(before, power);  // until it has answered it may be either
+  tell_guard();
   Status set = settle(firmware_->set_laser(static_cast<int>(laser), power));
   if (set) {
     power_[laser] = power;
   } else if (set.error().kind == ErrorKind::kUsage) {
     power_[laser] = before;
   }
+  tell_guard();
   return set;
 }
 
@@ -355,6 +364,7 @@ Status Controller::home() {
   } else if (homed.error().kind == ErrorKind::kCancelled && !link_->is_shut()) {
     moves_ = false;
     std::ranges::fill(power_, 0.0);
+    tell_guard();
   }
   return homed;
 }
@@ -374,6 +384,7 @@ Status Controller::ended(Status status) {
   if (status) {
     moves_ = false;
     std::ranges::fill(power_, 0.0);
+    tell_guard();
   }
   last_.reset();
   return status;

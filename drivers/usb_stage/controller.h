@@ -70,6 +70,8 @@ class Controller {
   /// No guard seeks while it is connected.
   Status connect();
   Status connect_alone();
+  /// Whether lasers are on.
+  void tell_guard();
   /// For a controller that cannot be reached and was at work; called where nothing of it is open.
   void let_guard_seek();
   /// After an error of the device: what can be sent without an answer is sent, and the link dropped. False:

@@ -105,6 +105,12 @@ void Guard::say(char word) {
   ::pthread_sigmask(SIG_SETMASK, &before, nullptr);
 }
 
+void Guard::lit(bool on) {
+  if (std::exchange(lit_, on) != on) {
+    say(on ? '!' : '-');
+  }
+}
+
 void Guard::seek() {
   if (!std::exchange(seeks_, true)) {
     say('?');

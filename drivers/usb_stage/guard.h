@@ -21,6 +21,9 @@ class Guard {
   /// Sends the guard home, and waits until it has let go of the controller: some milliseconds, or as long as
   /// it takes to send its bytes.
   ~Guard();
+  /// Whether lasers are on. While they are, the guard looks whether this program was suspended (Ctrl-Z), and
+  /// has it end: nothing else would ever put them off.
+  void lit(bool on);
   /// The lasers may be on and cannot be reached from here: the guard looks for the controller from now on.
   /// Nobody else opens it until this guard is sent home.
   void seek();
@@ -35,6 +38,7 @@ class Guard {
   void say(char word);
   int pipe_;
   int process_;
+  bool lit_ = false;
   bool seeks_ = false;
 };
 

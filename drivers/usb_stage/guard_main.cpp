@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright The Dubsar developers
 //
-// usb_stage_guard VID:PID[:SERIAL] HEX: waits on standard input. '.' there: all is well, go home. '?': the
-// controller cannot be reached, and its laser may be on; look for it, and send it the bytes, which put its
-// lasers off, as soon as it is there. The end of it, without a word: the program died; do the same.
+// usb_stage_guard VID:PID[:SERIAL] HEX: waits on standard input. '.' there: all is well, go home. '!': a
+// laser is on; from now on look whether the program was suspended, and have it end then. '-': all are off.
+// '?': the controller cannot be reached, and its laser may be on; look for it, and send it the bytes, which
+// put its lasers off, as soon as it is there. The end of it, without a word: the program died; do the same.
 #include <fcntl.h>
 #include <poll.h>
+#include <sys/types.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -13,6 +15,7 @@
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
+#include <fstream>
 #include <string>
 #include <thread>
 
@@ -32,10 +35,13 @@ std::string bytes_from(const std::string& hex) {
 }
 
 constexpr char kAllWell = '.';
+constexpr char kLit = '!';
+constexpr char kDark = '-';
 constexpr char kEnded = 0;     // the program did
 constexpr char kNothing = -1;  // was said in time
 constexpr int kForEver = -1;
 constexpr std::chrono::milliseconds kTryEvery = 250ms;
+constexpr std::chrono::milliseconds kLookEvery = 500ms;  ///< at a program whose laser is on
 /// Behind the program's end: whoever waits for all that it writes does not wait for the guard any longer.
 constexpr auto kTellAfter = 10s;
 constexpr auto kGiveUpAfter = 10min;
@@ -51,6 +57,33 @@ char listen(int timeout_ms) {
     got = heard > 0 ? ::read(0, &said, 1) : 0;
   } while ((heard < 0 || got < 0) && errno == EINTR);
   return heard == 0 ? kNothing : got == 1 ? said : kEnded;
+}
+
+/// By job control, as Ctrl-Z does it (T of proc(5)); one that a debugger holds is not.
+bool is_suspended(pid_t program) {
+  std::ifstream file("/proc/" + std::to_string(program) + "/stat");
+  std::string line;
+  std::getline(file, line);
+  const std::size_t name_ends = line.rfind(')');
+  return name_ends != std::string::npos && line.compare(name_ends, 3, ") T") == 0;
+}
+
+/// The first word that is not about lasers. A program that is suspended holds the controller's line, so that
+/// nobody else can put its laser off: it is woken up, and ends as by Ctrl-C.
+char listen_and_look(const usb_stage::UsbName& name, pid_t program) {
+  for (bool lit = false;;) {
+    const char said = listen(lit ? static_cast<int>(kLookEvery.count()) : kForEver);
+    if (said == kLit || said == kDark) {
+      lit = said == kLit;
+    } else if (said != kNothing) {
+      return said;
+    } else if (is_suspended(program) && ::getppid() == program) {
+      std::fprintf(stderr, "dubsar: %s: suspended with its laser on; the program is ended\n",
+                   name.text().c_str());
+      ::kill(program, SIGTERM);
+      ::kill(program, SIGCONT);
+    }
+  }
 }
 
 /// Whether the bytes went out.
@@ -102,6 +135,7 @@ int main(int count, char** words) {
   if (!name || bytes.empty()) {
     return 2;
   }
+  const pid_t program = ::getppid();
   // What ends the program must not end its guard: Ctrl-C goes to all of a terminal's processes.
   ::setsid();
   for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGPIPE}) {
@@ -113,7 +147,7 @@ int main(int count, char** words) {
     return 4;
   }
   ::close(1);
-  char said = listen(kForEver);
+  char said = listen_and_look(*name, program);
   while (said != kAllWell && said != kEnded) {
     if (put_off(*name, bytes)) {
       return 0;

@@ -268,7 +268,7 @@ TEST_P(Firmwares, AStuckMotorIsNoEndlessWait) {
 }
 
 TEST_P(Firmwares, TheLaserGoesOffHoweverTheProgramDies) {
-  for (const char* how : {"kill", "segv", "abort", "exit", "term"}) {
+  for (const char* how : {"kill", "segv", "abort", "exit", "term", "stop"}) {
     ASSERT_EQ(peer()->tell(std::string("firmware ") + GetParam()), "ok");
     test::PeerProcess victim(std::vector<std::string>{"/proc/self/exe", "--die", GetParam(), how});
     ASSERT_EQ(victim.refusal(), "") << how;
@@ -330,6 +330,9 @@ int die(const std::string& firmware, const std::string& how) {
   [[maybe_unused]] const char* got = std::fgets(line, sizeof line, stdin);
   if (how == "exit") {
     std::_Exit(0);
+  }
+  if (how == "stop") {  // as Ctrl-Z does it
+    std::raise(SIGSTOP);
   }
   std::raise(how == "kill" ? SIGKILL : how == "segv" ? SIGSEGV : how == "term" ? SIGTERM : SIGABRT);
   return 0;
