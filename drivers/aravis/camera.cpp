@@ -12,6 +12,7 @@
 #include "core/log.h"
 #include "core/pool_depth.h"
 #include "core/thread_priority.h"
+#include "drivers/aravis/close_up.h"
 #include "drivers/aravis/glib.h"
 #include "drivers/aravis/packet_room.h"
 
@@ -48,6 +49,18 @@ ArvBuffer* buffer_in_memory(std::size_t bytes) {
   }
   std::memset(memory, 0xff, bytes);  // zeros would be left to calloc, which leaves them to the kernel
   return arv_buffer_new_full(bytes, memory, memory, std::free);
+}
+
+/// What a camera says of bytes behind its rows is believed where there is room for them.
+void take_padding_out(ArvBuffer* buffer, const std::uint8_t* pixels, std::size_t rows, std::size_t row_bytes,
+                      std::uint64_t payload) {
+  gint behind_row = 0;
+  gint behind_all = 0;
+  arv_buffer_get_image_padding(buffer, &behind_row, &behind_all);
+  const std::size_t stride = row_bytes + static_cast<std::size_t>(std::max(behind_row, 0));
+  if (stride > row_bytes && stride * (rows - 1) + row_bytes <= payload) {
+    close_up_rows(const_cast<std::uint8_t*>(pixels), rows, row_bytes, stride);  // memory of our own
+  }
 }
 
 }  // namespace
@@ -204,6 +217,9 @@ Result<std::optional<Taken>> Camera::next(Clock::time_point until) {
       continue;
     }
     out.size = std::size_t{out.width} * out.height * bytes_per_pixel_;
+    const std::size_t planes = range_ != nullptr && range_->planar ? range_->coordinates() : 1U;
+    take_padding_out(buffer, out.pixels, out.height * planes,
+                     std::size_t{out.width} * bytes_per_pixel_ / planes, payload_);
     out.offset_x = static_cast<std::uint32_t>(std::max(arv_buffer_get_image_x(buffer), 0));
     out.offset_y = static_cast<std::uint32_t>(std::max(arv_buffer_get_image_y(buffer), 0));
     const std::int64_t now = clock_ns(CLOCK_MONOTONIC);

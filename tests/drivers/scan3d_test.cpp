@@ -9,6 +9,7 @@
 #include <cstring>
 #include <limits>
 
+#include "drivers/aravis/close_up.h"
 #include "drivers/aravis/options.h"
 
 namespace dubsar::aravis {
@@ -29,6 +30,13 @@ std::vector<std::uint8_t> bytes_of(const std::vector<float>& numbers) {
   std::vector<std::uint8_t> out(4 * numbers.size());
   std::memcpy(out.data(), numbers.data(), out.size());
   return out;
+}
+
+TEST(Padding, RowsOfAFrameAreClosedUp) {
+  std::vector<std::uint8_t> frame{1, 2, 3, 0xee, 4, 5, 6, 0xee, 7, 8, 9};
+  close_up_rows(frame.data(), 3, 3, 4);
+  frame.resize(9);
+  EXPECT_EQ(frame, (std::vector<std::uint8_t>{1, 2, 3, 4, 5, 6, 7, 8, 9}));
 }
 
 TEST(Scan3d, CMeansDepthOverColumns) {
