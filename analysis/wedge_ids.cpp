@@ -137,6 +137,7 @@ int WedgeIds::of_made(const Wedge& made) {
   if (same == known_.size()) {
     return give_new(made);
   }
+  ++found_again_;
   give(same, made);
   return known_[same].id;
 }

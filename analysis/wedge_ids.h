@@ -28,7 +28,7 @@ class WedgeIds {
   /// one that was measured and now had to be added.
   [[nodiscard]] int of_made(const Wedge& made);
 
-  /// How many of the earlier ones were found where they lay.
+  /// How many of the earlier ones were found where they lay, or made there anew.
   [[nodiscard]] std::size_t found_again() const { return found_again_; }
   /// They were taken for another tablet's.
   [[nodiscard]] bool forgot_earlier() const { return forgot_earlier_; }

@@ -110,7 +110,9 @@ TEST(WedgeIds, OfWhatAPersonMadeGoByHowItCameAbout) {
   EXPECT_THAT(ids.of_found(slab(), {on_obverse(0.1, 0)}), ElementsAre(0)) << "not the merged one's";
   EXPECT_EQ(ids.of_made(added), 2);
   EXPECT_EQ(ids.of_made(merged), 1);
+  EXPECT_EQ(ids.found_again(), 3U) << "also those that a person made";
   EXPECT_EQ(ids.of_made(merged), 3) << "each once";
+  EXPECT_EQ(ids.found_again(), 3U);
   WedgeIds better(earlier);
   EXPECT_THAT(better.of_found(slab(), {found, on_obverse(5, 0)}), ElementsAre(0, 2))
       << "a better mesh shows by itself what had to be added";
