@@ -202,12 +202,12 @@ void MeshViewing::analyse_part(MeshSelection selection, const fs::path& stem) {
     // A part keeps the frame of the whole: its obverse is where the tablet's is.
     take_mesh(part, before.tablet_from_model, mesh_file.filename().string());
     doubt_mesh(std::move(doubts));
+    analysis_options_.wedges.earlier.wedges = known_wedges(wedges.wedges, wedges.former);
     take_wedges(std::move(wedges), analysis->fields.body_count());
     take_field(MeshField::kOpenness, analysis->fields.openness);
     take_field(MeshField::kMeanCurvature, analysis->fields.mean_curvature_per_mm);
     take_field(MeshField::kHeight, analysis->fields.height_mm);
     wedges_file_ = wedges_file;
-    analysis_options_.wedges.earlier.wedges = known_wedges(wedges.wedges, wedges.former);
     in_session_ = false;
     take_selections(selections_file_of(mesh_file));
     take_written({mesh_file, wedges_file});

@@ -217,6 +217,32 @@ TEST_F(MeshViewingCorrections, ACorrectionLeavesTheOthersTheIdsThatTheyHad) {
   EXPECT_THAT(read_wedges(file)->former, SizeIs(0));
 }
 
+TEST_F(MeshViewingCorrections, ACorrectionOfAPartLeavesTheOthersTheIdsThatTheyHad) {
+  const JobContext job;
+  const Result<Analysis> analysis = analyze_mesh(*tablet_, {}, job);
+  const fs::path file = folder_.path() / "part.wedges.json";
+  WedgeFile before = wedge_file("part.ply", {}, *analysis);
+  for (Wedge& wedge : before.wedges) {
+    wedge.id += 30;
+  }
+  ASSERT_TRUE(write_wedges(file, before));
+  MeshViewing viewing([] {});
+  viewing.open(mesh_);
+  test::settle(viewing);
+  const auto faces = static_cast<std::uint32_t>(tablet_->faces.size());
+  viewing.analyse_part({"all", MeshElement::kFace, {{0, faces}}}, folder_.path() / "part");
+  test::settle(viewing);
+  ASSERT_TRUE(viewing.state().wedges);
+  ASSERT_EQ(viewing.state().wedges->front().id, 30);
+  WedgeCorrection gone;
+  gone.at_mm = {viewing.state().wedges->front().depth_point_mm};
+  viewing.correct(gone);
+  test::settle(viewing);
+  ASSERT_FALSE(viewing.state().error) << viewing.state().error->line();
+  EXPECT_EQ(viewing.state().wedges->front().id, 31);
+  EXPECT_EQ(read_wedges(file)->wedges.front().id, 31);
+}
+
 /// Whoever closes the window or stops has said it all the same.
 TEST_F(MeshViewingCorrections, OneThatIsClosedWhileItIsMeasuredIsNotedAndMadeAtTheNextOpening) {
   const fs::path file = mesh_.parent_path() / "tablet.wedges.json";
