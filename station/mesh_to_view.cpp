@@ -86,6 +86,7 @@ Result<MeshToView> read_mesh_to_view(const fs::path& file, const fs::path& wedge
   Result<Mesh> as_known = known.unit.empty() ? bad_input(where, {}) : read_as(mm_per_unit(known.unit));
   if (as_known && !of_another_mesh(known.wedges, *as_known, {})) {
     read = std::move(as_known);
+    out.unit_assumed = doubt && known.is_assumed ? known.unit : std::string();
     doubt = doubt && known.is_assumed ? std::optional(unit_taken(known.unit, *doubt)) : std::nullopt;
   } else if (doubt) {
     const Result<UnitBySize> told = unit_by_size(*read, file);
@@ -98,6 +99,7 @@ Result<MeshToView> read_mesh_to_view(const fs::path& file, const fs::path& wedge
       if (!read) {
         return std::unexpected(read.error());
       }
+      out.unit_assumed = told->taken_for;
       doubt = unit_taken(told->taken_for, *doubt);
     }
   }

@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "core/mesh.h"
@@ -17,6 +18,8 @@ struct MeshToView {
   Mesh mesh;
   FileLabel label;            ///< of its file; where its unit is doubtful, what is made of it says that, too
   std::vector<Error> doubts;  ///< what would measure wrongly: its unit, its numbers, its faces
+  /// What its numbers were taken for where nobody says it, as WedgeFile has it; else empty.
+  std::string unit_assumed;
   std::optional<Error> unmeasured;  ///< why no wedges are measured of it: nobody knows its unit
 };
 

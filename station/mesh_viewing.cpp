@@ -185,6 +185,7 @@ void MeshViewing::open(const fs::path& file) {
     }
     const RigidTransform tablet_from_model = tablet_frame(read->mesh);
     label_ = std::move(read->label);
+    unit_assumed_ = std::move(read->unit_assumed);
     take_mesh(std::make_shared<const Mesh>(std::move(read->mesh)), tablet_from_model,
               file.filename().string());
     unmeasured_ = std::move(read->unmeasured);
@@ -209,6 +210,7 @@ void MeshViewing::show(std::shared_ptr<const Mesh> mesh, const RigidTransform& t
 
 void MeshViewing::take_label_of_session(const fs::path& session) {
   label_ = {};
+  unit_assumed_.clear();
   const Result<SessionStore> store = SessionStore::open(session, SessionStore::Access::kReadOnly);
   Result<FileLabel> label = store ? tablet_label(*store) : Result<FileLabel>(std::unexpected(store.error()));
   if (!label) {

@@ -144,6 +144,7 @@ class MeshViewing {
   ViewedMesh state_;
   // Of the worker alone.
   FileLabel label_;  ///< of the file that was opened, or of the session, for what is written of its mesh
+  std::string unit_assumed_;            ///< of the file that was opened, for its wedges; never of a part
   std::unique_ptr<Analysis> analysis_;  ///< of the mesh, once it was asked for
   AnalysisOptions analysis_options_;
   std::filesystem::path wedges_file_;

@@ -178,6 +178,9 @@ Status MeshViewing::write_corrected() {
   WedgeFile wedges =
       wedge_file(state().name.empty() ? "model.ply" : state().name, analysis_options_, *analysis_);
   wedges.label = label_;
+  if (!state().is_part) {  // whose own file says millimetres
+    wedges.unit_assumed = unit_assumed_;
+  }
   Status written = write_wedges(wedges_file_, wedges);
   if (written) {  // an id that was told there is of no other wedge, also when this is taken back
     analysis_options_.wedges.earlier.wedges = known_wedges(analysis_->set.wedges, analysis_->set.former);

@@ -156,6 +156,11 @@ TEST_F(MeshDoubts, AMeshIsReadInTheUnitThatItsWedgesWereMeasuredIn) {
   ASSERT_TRUE(assumed.state().wedges);
   EXPECT_NEAR(across_mm(assumed.state()), 20, 3);
   EXPECT_THAT(lines_of(assumed.state().mesh_doubts), ElementsAre(HasSubstr("are taken for m")));
+  assumed.remove_wedge(wedges_mm_[0]);
+  ASSERT_FALSE(assumed.state().error) << assumed.state().error->line();
+  EXPECT_EQ(read_wedges(wedges_file_)->corrections, 1U);
+  EXPECT_EQ(read_wedges(wedges_file_)->unit_assumed, "m") << "nobody has said it by now either";
+  fs::remove(corrections_);
   // In centimetres somebody has said it: `dubsar analyze --unit cm`, as its stamp tells.
   write_numbers(0.1);
   write_wedges_beside("");
