@@ -241,7 +241,10 @@ std::vector<float> vertex_reliability(const Mesh& mesh, const VertexGraph& graph
         for (const std::uint32_t f : faces) {
           least = std::min<int>(least, rank[f]);
         }
-        const float own = mesh.reliability.empty() ? 1.0F : mesh.reliability[v];
+        // What is no share of one is as the reader of files has it: one vertex that is no number would cost
+        // the wedge that it lies in, and one below zero turn its faces.
+        const float given = mesh.reliability.empty() ? 1.0F : mesh.reliability[v];
+        const float own = given > 0 ? std::min(given, 1.0F) : 0.0F;
         reliability[v] = own * static_cast<float>(least) / static_cast<float>(iterations + 1);
       },
       kGrain);

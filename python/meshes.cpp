@@ -95,6 +95,12 @@ MeshPointer make_mesh(const MaskedInput<float>& given_vertices, const py::object
       raise({ErrorKind::kUsage, "reliability has the wrong length", {}, "give one number a vertex"});
     }
     mesh->reliability.assign(reliability.data(), reliability.data() + count);
+    if (!std::ranges::all_of(mesh->reliability, [](float r) { return r >= 0 && r <= 1; })) {
+      raise({ErrorKind::kUsage,
+             "reliability is not between 0 and 1",
+             {},
+             "give shares: 0 for what is not known"});
+    }
   }
   check_sound(*mesh);
   value_of(check_precision(*mesh, "the mesh"));

@@ -4,6 +4,8 @@
 
 #include <gmock/gmock.h>
 
+#include <limits>
+
 #include "tests/analysis/support/shapes.h"
 
 namespace dubsar {
@@ -81,6 +83,19 @@ TEST(Reliability, TheMeshsOwnTakesPart) {
   const std::vector<float> r = reliability_of(mesh, 2);
   EXPECT_FLOAT_EQ(r[7], 0.5F);
   EXPECT_FLOAT_EQ(r.back(), 0);
+}
+
+TEST(Reliability, OfTheMeshsOwnWhatIsNoShareOfOneIsBroughtIntoIt) {
+  Mesh mesh = shapes::sphere(10, 3);
+  mesh.reliability.assign(mesh.positions.size(), 0.5F);
+  mesh.reliability[1] = std::numeric_limits<float>::quiet_NaN();
+  mesh.reliability[2] = -3;
+  mesh.reliability[3] = 85;  // a percentage
+  const std::vector<float> r = reliability_of(mesh, 2);
+  EXPECT_FLOAT_EQ(r[1], 0);
+  EXPECT_FLOAT_EQ(r[2], 0);
+  EXPECT_FLOAT_EQ(r[3], 1);
+  EXPECT_FLOAT_EQ(r[4], 0.5F);
 }
 
 }  // namespace

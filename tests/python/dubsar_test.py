@@ -213,6 +213,12 @@ class Meshes(unittest.TestCase):
             with self.assertRaisesRegex(dubsar.UsageError, f"^{name} has masked values"):
                 made()
 
+    def test_reliability_is_a_share(self):
+        self.assertEqual(len(dubsar.Mesh(self.corners, self.sides, reliability=[0, 0.5, 1, 1]).reliability), 4)
+        for wrong in ([1, 1, 1, float("nan")], [100, 85, 90, 100], [1, 1, 1, -1]):
+            with self.assertRaisesRegex(dubsar.UsageError, "^reliability is not between 0 and 1"):
+                dubsar.Mesh(self.corners, self.sides, reliability=wrong)
+
     def test_tetrahedron(self):
         mesh = dubsar.Mesh(self.corners, self.sides)
         report = dubsar.check_mesh(mesh)
