@@ -121,6 +121,7 @@ class MeshViewing {
   void take_corrections(const std::filesystem::path& wedges_file, bool in_session);
   void doubt_mesh(std::vector<Error> doubts);
   void make_corrections(std::vector<WedgeCorrection> corrections, bool must_make_last);
+  [[nodiscard]] std::vector<WedgeCorrection> with_next(WedgeCorrection correction) const;
   [[nodiscard]] Status note(const std::vector<WedgeCorrection>& known,
                             const std::vector<WedgeCorrection>& now) const;
   [[nodiscard]] Status write_corrected();

@@ -237,20 +237,24 @@ void MeshViewing::make_corrections(std::vector<WedgeCorrection> corrections, boo
   take_measured_wedges();
   if (!written) {
     complain(written.error());
+  } else if (refused) {
+    finish_corrections();  // of one that was stopped before this one
   }
   say_corrected(std::move(not_made));
 }
 
+/// All that was said, with this one.
+std::vector<WedgeCorrection> MeshViewing::with_next(WedgeCorrection correction) const {
+  std::vector<WedgeCorrection> all = analysis_options_.wedges.corrections;
+  // Where it was noted before and stopped then, what is missing is the rest.
+  if (analysis_ || all.empty() || !same(all.back(), correction)) {
+    all.push_back(std::move(correction));
+  }
+  return all;
+}
+
 void MeshViewing::correct(WedgeCorrection correction) {
-  ask(
-      [this, correction = std::move(correction)] {
-        std::vector<WedgeCorrection> all = analysis_options_.wedges.corrections;
-        // It was noted before and stopped then: what is missing is the rest.
-        if (analysis_ || all.empty() || !same(all.back(), correction)) {
-          all.push_back(correction);
-        }
-        make_corrections(std::move(all), true);
-      },
+  ask([this, correction = std::move(correction)] { make_corrections(with_next(correction), true); },
       AskedBy::kPersonForGood);
 }
 
@@ -259,9 +263,7 @@ void MeshViewing::correct_by_adding(MeshSelection selection) {
       [this, selection = std::move(selection)] {
         const std::shared_ptr<const Mesh> shown = mesh();
         if (shown && fits(selection, *shown)) {
-          std::vector<WedgeCorrection> all = analysis_options_.wedges.corrections;
-          all.push_back(addition_of(*shown, selection));
-          make_corrections(std::move(all), true);
+          make_corrections(with_next(addition_of(*shown, selection)), true);
         }
       },
       AskedBy::kPersonForGood);

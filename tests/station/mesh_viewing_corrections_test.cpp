@@ -295,6 +295,29 @@ TEST_F(MeshViewingCorrections, OneThatIsStoppedIsNotedSaidAndMadeWhenItIsSaidAga
   EXPECT_EQ(read_wedges(mesh_.parent_path() / "tablet.wedges.json")->corrections, 1U);
 }
 
+TEST_F(MeshViewingCorrections, OneThatIsStoppedIsWrittenAlsoWhereTheNextOneCannotBeMade) {
+  MeshViewing viewing([] {});
+  viewing.open(mesh_);
+  test::settle(viewing);
+  WedgeCorrection gone;
+  gone.at_mm = {wedges_mm_[0]};
+  viewing.correct(gone);
+  viewing.stop();
+  test::settle(viewing);
+  ASSERT_EQ(noted(), 1U);
+  WedgeCorrection nowhere;
+  nowhere.at_mm = {Eigen::Vector3d(500, 500, 500)};
+  viewing.correct(nowhere);
+  test::settle(viewing);
+  ASSERT_THAT(viewing.state().not_made, SizeIs(1));
+  EXPECT_THAT(viewing.state().not_made[0], StartsWith("no wedge lies at"));
+  EXPECT_EQ(noted(), 1U);
+  const Result<WedgeFile> written = read_wedges(mesh_.parent_path() / "tablet.wedges.json");
+  ASSERT_TRUE(written) << "the window shows the wedges without it";
+  EXPECT_EQ(written->corrections, 1U);
+  EXPECT_THAT(written->wedges, SizeIs(wedges_mm_.size() - 1));
+}
+
 /// What was done by hand is not measured away because its note went astray.
 TEST_F(MeshViewingCorrections, WedgesWhoseNoteIsNotThereOrDamagedStay) {
   const fs::path file = mesh_.parent_path() / "tablet.wedges.json";
