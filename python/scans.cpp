@@ -35,11 +35,27 @@ namespace {
 
 using Grids = std::vector<GridPointer>;
 
+/// Whoever writes NaN into the view of a grid means no sample; its mask does not say so.
+void check_samples(const Grids& grids, std::size_t place) {
+  const RangeGrid& grid = *grids[place];
+  for (std::size_t i = 0; i < grid.size(); ++i) {
+    if (grid.valid[i] != 0 && !grid.point(i).allFinite()) {
+      const auto cols = static_cast<std::size_t>(grid.cols);
+      raise({ErrorKind::kUsage,
+             grid_name(grids, static_cast<int>(place)) + " has a sample that is not finite, in row " +
+                 std::to_string(i / cols) + ", column " + std::to_string(i % cols),
+             {},
+             "set valid to False there"});
+    }
+  }
+}
+
 void check_grids(const Grids& grids) {
   for (std::size_t k = 0; k < grids.size(); ++k) {
     if (!grids[k] || grids[k]->size() == 0) {
       raise({ErrorKind::kUsage, "grid " + std::to_string(k) + " is empty", {}, "give range grids"});
     }
+    check_samples(grids, k);
   }
 }
 

@@ -331,6 +331,20 @@ class Errors(unittest.TestCase):
             dubsar.write_mesh("/proc/nowhere/mesh.ply", dubsar.Mesh(Meshes.corners, Meshes.sides))
         self.assertIsInstance(caught.exception, dubsar.StorageError)
 
+    def test_a_sample_without_a_place_is_named(self):
+        grid = plane()
+        grid.z[2, 5] = np.nan
+        for call in (
+            lambda: dubsar.register([plane(), grid]),
+            lambda: dubsar.stitch([plane(), grid], [dubsar.Pose(k, np.eye(4)) for k in range(2)]),
+        ):
+            with self.assertRaisesRegex(
+                dubsar.UsageError, r"^grid 1 \(plane.ply\) has a sample that is not finite, in row 2, column 5"
+            ):
+                call()
+        grid.valid[2, 5] = False
+        self.assertEqual(len(dubsar.register([grid])), 1)
+
     def test_unit_and_options(self):
         for call in (
             lambda: dubsar.read_mesh("x.ply", unit="inch"),
