@@ -31,6 +31,11 @@ Result<GrayImage> parse_png(std::string_view bytes, const std::string& where) {
     png_image_free(&png);
     return bad_input(where, "the picture has no sensible size", kMend);
   }
+  if ((png.format & PNG_FORMAT_FLAG_LINEAR) != 0) {
+    // libpng takes them for linear light and bends them, and nobody says how many of the bits are used.
+    png_image_free(&png);
+    return bad_input(where, "the picture has 16 bits a colour", "give it with 8, as the camera's full range");
+  }
   // Colour comes as it stands and is weighed here: the library's own luma is that of linear light.
   png.format = PNG_FORMAT_RGB;
   GrayImage image(static_cast<int>(png.width), static_cast<int>(png.height));

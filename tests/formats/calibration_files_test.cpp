@@ -298,5 +298,18 @@ TEST(GrayFile, PngAndPgm) {
   EXPECT_FALSE(parse_gray("\x89PNG\r\n\x1a\n rubbish", "a.png").has_value());
 }
 
+// Read as 8 bits it would go through a curve: 64 of 255 became 136.
+TEST(GrayFile, APngOfSixteenBitsIsRefused) {
+  constexpr char kOneByOne[] =
+      "\x89\x50\x4e\x47\x0d\x0a\x1a\x0a\x00\x00\x00\x0d\x49\x48\x44\x52\x00\x00\x00\x01\x00\x00"
+      "\x00\x01\x10\x00\x00\x00\x00\x6a\xee\x47\x16\x00\x00\x00\x0b\x49\x44\x41\x54\x78\x9c\x63"
+      "\x70\x70\x00\x00\x00\xc3\x00\x81\xdf\xdf\x82\xe6\x00\x00\x00\x00\x49\x45\x4e\x44\xae\x42"
+      "\x60\x82";
+  const Result<GrayImage> read = parse_gray({kOneByOne, sizeof kOneByOne - 1}, "a.png");
+  ASSERT_FALSE(read.has_value());
+  EXPECT_EQ(read.error().line(),
+            "a.png: the picture has 16 bits a colour; give it with 8, as the camera's full range");
+}
+
 }  // namespace
 }  // namespace dubsar

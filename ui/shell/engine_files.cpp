@@ -161,6 +161,8 @@ constexpr EnginePhrase kFiles[] = {
     {"has balls that overlap", "hat Kugeln, die sich überschneiden"},
     // pictures
     {"the picture cannot be read: ", "das Bild ist nicht lesbar: "},
+    {"the picture has 16 bits a colour", "das Bild hat 16 Bit je Farbe"},
+    {"give it with 8, as the camera's full range", "es mit 8 geben, als vollen Umfang der Kamera"},
     {"the picture has no sensible size", "das Bild hat keine sinnvolle Größe"},
     {"give a whole PNG, JPEG or PGM picture", "ein ganzes Bild in PNG, JPEG oder PGM geben"},
     {"give a whole picture", "ein ganzes Bild geben"},
