@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <vector>
 
 #include "archive/page_blocks.h"
@@ -33,8 +34,11 @@ struct CrossPlan {
   plan.all_wide_mm = six[1].width_mm + plan.column_mm + six[3].width_mm + 2 * CrossPlan::kGapMm;
   plan.all_high_mm =
       height_mm(six[0]) + plan.middle_mm + height_mm(six[4]) + height_mm(six[5]) + 3 * CrossPlan::kGapMm;
-  plan.unit = kPointsPerMm * std::min({1.0, room_mm / std::max(plan.all_wide_mm, 1e-3),
-                                       kHighestMm / std::max(plan.all_high_mm, 1e-3)});
+  const double fits = std::min(
+      {1.0, room_mm / std::max(plan.all_wide_mm, 1e-3), kHighestMm / std::max(plan.all_high_mm, 1e-3)});
+  // A whole percentage, so that it can be told; of what would have none, as small as it has to be.
+  const double percent = std::floor(100 * fits);
+  plan.unit = kPointsPerMm * (percent >= 1 ? percent / 100 : fits);
   return plan;
 }
 

@@ -12,6 +12,7 @@
 #include "archive/cross_plan.h"
 #include "archive/page_blocks.h"
 #include "archive/pdf_lines.h"
+#include "archive/print_scale.h"
 
 namespace dubsar {
 
@@ -334,6 +335,22 @@ void spell(const PdfSheet& sheet, PageBlock& block) {
   }
 }
 
+/// The page tells how large its six sides are where it is printed itself. Here they are as large as there is
+/// room for on one sheet, which high ones are not at life size.
+void tell_scale(const PageBlock& cross, PageBlock& below) {
+  if (cross.figures.size() != 6) {
+    return;
+  }
+  const double scale = cross_plan(cross.figures, kColumn / kPointsPerMm).unit / kPointsPerMm;
+  for (TextRun& run : below.text) {
+    const std::size_t from = run.text.find(kPrintedWords);
+    const std::size_t stop = from == std::string::npos ? from : run.text.find('.', from);
+    if (stop != std::string::npos) {
+      run.text.replace(from, stop + 1 - from, printed_words(scale));
+    }
+  }
+}
+
 }  // namespace
 
 Result<std::vector<std::uint8_t>> page_pdf(std::string_view html, const PdfInfo& info) {
@@ -346,6 +363,11 @@ Result<std::vector<std::uint8_t>> page_pdf(std::string_view html, const PdfInfo&
   std::vector<PageBlock> blocks = page_blocks(html);
   for (PageBlock& block : blocks) {
     spell(*sheet, block);
+  }
+  for (std::size_t k = 0; k + 1 < blocks.size(); ++k) {
+    if (blocks[k].kind == PageBlock::Kind::kCross) {
+      tell_scale(blocks[k], blocks[k + 1]);
+    }
   }
   for (std::size_t k = 0; k < blocks.size(); ++k) {
     setter.set(blocks[k], k + 1 < blocks.size() ? &blocks[k + 1] : nullptr);

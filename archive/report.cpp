@@ -11,6 +11,7 @@
 #include "archive/html.h"
 #include "archive/html_table.h"
 #include "archive/png.h"
+#include "archive/print_scale.h"
 #include "archive/report_sections.h"
 #include "archive/report_style.h"
 
@@ -81,15 +82,12 @@ Result<std::string> six_sides(const ReportPictures& pictures) {
         picture_tag(views[face], *uri, "The " + name, "--share: " + percent(wide_mm(face), room_mm) + "; ");
     html.append("<figcaption>").append(name).append("</figcaption></figure>\n");
   }
-  html +=
-      "<div class=\"bar\" style=\"grid-area: bar; --share: " + percent(bar_mm(right_mm), right_mm) + "\">" +
-      fmt::format("{} mm", bar_mm(right_mm)) +
-      "</div>\n</div>\n<p class=\"aside\">Drawn from the "
-      "mesh, all to one scale, " +
-      fixed(1000.0 * mm_per_px, 1) + " µm to a pixel, lit from the upper left. " +
-      (print_scale == 1.0 ? "Printed at 100 % they are life size."
-                          : "Printed at 100 % they are " + fixed(100 * print_scale, 0) + " % of life size.") +
-      "</p>\n</section>\n";
+  html += "<div class=\"bar\" style=\"grid-area: bar; --share: " + percent(bar_mm(right_mm), right_mm) +
+          "\">" + fmt::format("{} mm", bar_mm(right_mm)) +
+          "</div>\n</div>\n<p class=\"aside\">Drawn from the "
+          "mesh, all to one scale, " +
+          fixed(1000.0 * mm_per_px, 1) + " µm to a pixel, lit from the upper left. " +
+          printed_words(print_scale) + "</p>\n</section>\n";
   return html;
 }
 

@@ -322,6 +322,32 @@ TEST(PagePdf, HasTheBarOfThePage) {
   }
 }
 
+TEST(PagePdf, SaysHowLargeTheSixSidesAreOnItsOwnPaper) {
+  const auto printed = [](int height_px) {
+    Image image = filled_image(40, height_px, {200, 200, 200});
+    image.mm_per_px = 0.5;
+    const auto uri = png_data_uri(image, "side");
+    EXPECT_TRUE(uri);
+    std::string html = "<div class=\"cross\">";
+    for (int side = 0; side < 6; ++side) {
+      html += "<figure><img width=\"40\" height=\"" + std::to_string(height_px) +
+              "\" style=\"--mm: 20mm\" src=\"" + uri.value_or("") +
+              "\"><figcaption>side</figcaption></figure>";
+    }
+    const auto pdf = page_pdf(
+        html + "</div><p class=\"aside\">To one scale. Printed at 100 % they are life size.</p><p>More.</p>",
+        {"Tablet", "Dubsar", "2026-01-02T03:04:05Z"});
+    EXPECT_TRUE(pdf) << pdf.error().line();
+    return pdf ? read_by("pdftotext", *pdf, "-") : std::string();
+  };
+  EXPECT_NE(printed(40).find("To one scale. Printed at 100 % they are life size.\n"), std::string::npos);
+  // Four of 80 mm above each other are 329 mm with the gaps, and there is room for 235.
+  const std::string high = printed(160);
+  EXPECT_NE(high.find("To one scale. Printed at 100 % they are 71 % of life size.\n"), std::string::npos)
+      << high;
+  EXPECT_NE(high.find("More."), std::string::npos) << high;
+}
+
 TEST(PagePdf, AHeadingStandsOnThePageOfItsPicture) {
   Image image = filled_image(600, 700, {200, 200, 200});
   image.mm_per_px = 0.1;
