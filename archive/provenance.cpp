@@ -5,6 +5,7 @@
 #include "archive/provenance.h"
 
 #include <cmath>
+#include <iterator>
 #include <set>
 
 #include "archive/rights.h"
@@ -80,14 +81,52 @@ OrderedJson tablet_node(const ProvenanceInput& input) {
   return node;
 }
 
-OrderedJson scan_node(const ProvenanceInput& input, const ProvenanceScan& scan) {
+/// The devices that scans name, "" among them where some name none. One: all are of the device of the pages.
+std::set<std::string> devices_of(const ProvenanceInput& input) {
+  std::set<std::string> devices;
+  for (const ProvenanceScan& scan : input.scans) {
+    devices.insert(scan.device);
+  }
+  return devices;
+}
+
+std::string device_id(const ProvenanceInput& input, const std::set<std::string>& devices,
+                      const std::string& device) {
+  const std::string id = input.base_url + "provenance/device";
+  return devices.size() < 2
+             ? id
+             : id + "-" + std::to_string(std::distance(devices.begin(), devices.find(device)) + 1);
+}
+
+/// The device of the pages, and where scans name different ones, each of those.
+void add_devices(const ProvenanceInput& input, const std::set<std::string>& devices, OrderedJson& graph) {
+  OrderedJson node = {{"@id", input.base_url + "provenance/device"},
+                      {"@type", "crmdig:D8_Digital_Device"},
+                      {"rdfs:label", input.device.empty() ? "unknown device" : input.device}};
+  if (devices.size() > 1) {
+    node["crm:P3_has_note"] = "of the scan that was stored last; others are of others, as each scan says";
+  }
+  graph.push_back(std::move(node));
+  for (const std::string& device : devices) {
+    if (devices.size() > 1 && !device.empty()) {
+      graph.push_back({{"@id", device_id(input, devices, device)},
+                       {"@type", "crmdig:D8_Digital_Device"},
+                       {"rdfs:label", device}});
+    }
+  }
+}
+
+OrderedJson scan_node(const ProvenanceInput& input, const std::set<std::string>& devices,
+                      const ProvenanceScan& scan) {
   const std::string id = input.base_url + "provenance/scan-" + std::to_string(scan.id);
   OrderedJson node = {{"@id", id},
                       {"@type", "crmdig:D2_Digitization_Process"},
                       {"rdfs:label", "Scan " + std::to_string(scan.id)},
                       {"crmdig:L1_digitized", reference(input.base_url + "tablet")},
-                      {"crmdig:L12_happened_on_device", reference(input.base_url + "provenance/device")},
                       {"crm:P3_has_note", scan.note}};
+  if (devices.size() < 2 || !scan.device.empty()) {
+    node["crmdig:L12_happened_on_device"] = reference(device_id(input, devices, scan.device));
+  }
   if (!input.operator_name.empty()) {
     node["crm:P14_carried_out_by"] = reference(input.base_url + "provenance/operator");
   }
@@ -173,9 +212,8 @@ std::string provenance_jsonld(const ProvenanceInput& input) {
       graph.front()["dcterms:license"] = reference(address);
     }
   }
-  graph.push_back({{"@id", input.base_url + "provenance/device"},
-                   {"@type", "crmdig:D8_Digital_Device"},
-                   {"rdfs:label", input.device.empty() ? "unknown device" : input.device}});
+  const std::set<std::string> devices = devices_of(input);
+  add_devices(input, devices, graph);
   std::set<std::string> programs{input.program};
   for (const ProvenanceStep& step : input.steps) {
     programs.insert(step.program.empty() ? input.program : step.program);
@@ -200,7 +238,7 @@ std::string provenance_jsonld(const ProvenanceInput& input) {
     graph.push_back(std::move(node));
   }
   for (const ProvenanceScan& scan : input.scans) {
-    graph.push_back(scan_node(input, scan));
+    graph.push_back(scan_node(input, devices, scan));
   }
   for (const ProvenanceStep& step : input.steps) {
     graph.push_back(step_node(input, step));

@@ -23,6 +23,7 @@ struct ProvenanceScan {
   bool in_model = false;
   std::vector<ProvenanceValue> values;
   bool stored_only = false;  ///< `when` it was stored: its device told no time
+  std::string device{};      ///< as the scan itself names it, or empty
 };
 
 /// A name under the verdict.
@@ -54,8 +55,8 @@ struct ProvenanceInput {
   std::string collection;
   std::string tablet_note{};  ///< what else has to be known of the tablet, or empty
   std::string operator_name;
-  std::string rights{};  ///< in words, or empty
-  std::string device;
+  std::string rights{};     ///< in words, or empty
+  std::string device;       ///< of the scan that was stored last
   std::string program;      ///< "Dubsar 0.1.0"
   std::string when;         ///< ISO 8601, of the package
   std::string calibration;  ///< in words; empty when the device told none
@@ -66,7 +67,9 @@ struct ProvenanceInput {
 };
 
 /// How every file came about, as JSON-LD with the terms of CIDOC CRM and CRMdig: the tablet, the device and
-/// its calibration, each scan, each step of computing with its parameters, errors and software.
+/// its calibration, each scan, each step of computing with its parameters, errors and software. Where scans
+/// name different devices each happened on its own, which has a node by that name; those that name none on
+/// none.
 [[nodiscard]] std::string provenance_jsonld(const ProvenanceInput& input);
 
 }  // namespace dubsar

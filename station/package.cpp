@@ -16,7 +16,6 @@
 #include "analysis/wedge_features.h"
 #include "archive/staged_folder.h"
 #include "core/log.h"
-#include "core/utf8.h"
 #include "formats/bag_check.h"
 #include "station/done_stamp.h"
 #include "station/earlier_package.h"
@@ -55,15 +54,18 @@ struct FoundWedges {
   bool kept = false;  ///< in the session
 };
 
-/// " (its files say: A; B)", the devices that the scans name; empty where they name none.
-std::string said_by_files(const SessionStore& store) {
-  const auto scans = store.scans();
-  std::set<std::string> devices;
-  for (const StoredScan& scan : scans ? *scans : std::vector<StoredScan>()) {
-    devices.insert(one_line(scan.device));
+/// What is to be said beside the device of the scan that was stored last: " (its files say: A)", or that
+/// scans name different ones. Empty where nothing is.
+std::string said_by_scans(const PackageContent& content) {
+  std::set<std::string> devices = devices_of_scans(content.store);
+  const bool some_name_none = devices.erase(std::string()) > 0;
+  if (content.comes_of_several_devices()) {
+    return fmt::format(" (the scan that was stored last; the scans name: {}{})", fmt::join(devices, "; "),
+                       some_name_none ? "; and some name none" : "");
   }
-  devices.erase(std::string());
-  return devices.empty() ? std::string() : fmt::format(" (its files say: {})", fmt::join(devices, "; "));
+  return devices.empty() || !content.comes_from_files()
+             ? std::string()
+             : fmt::format(" (its files say: {})", fmt::join(devices, "; "));
 }
 
 /// The session's own wedges, or, where it has none of this surface, measured now: then under the ids that an
@@ -107,11 +109,12 @@ std::string kinds_of_things(const PackageContent& content) {
 }
 
 std::vector<BagField> bag_fields(const PackageContent& content) {
-  std::string description =
-      content.simulated.empty()
-          ? std::string("Surface of a cuneiform tablet, ") +
-                (content.comes_from_files() ? "from files of scans: " : "measured by laser triangulation: ")
-          : "SIMULATED. " + content.simulated + " Here are ";
+  std::string description = content.simulated.empty()
+                                ? std::string("Surface of a cuneiform tablet, ") +
+                                      (content.comes_of_several_devices() ? "measured with several devices: "
+                                       : content.comes_from_files()       ? "from files of scans: "
+                                                                    : "measured by laser triangulation: ")
+                                : "SIMULATED. " + content.simulated + " Here are ";
   description += kinds_of_things(content) + ". ";
   description += content.results().red_map.conclusive
                      ? "The verdict is conclusive: what the scanner can reach is sampled densely enough."
@@ -273,8 +276,8 @@ Result<Package> write_package(const fs::path& session, const fs::path& to, const
                          .left_out = {},
                          .job = job};
   const bool is_named_by_session = tablet.cdli.empty() && tablet.museum_number.empty();
-  if (content.comes_from_files()) {
-    content.facts.device += said_by_files(store);
+  if (!content.facts.device.empty()) {
+    content.facts.device += said_by_scans(content);
   }
   if (const std::string& behind = source->behind(); !behind.empty()) {
     log_warning(session.string() + ": " + behind + "; run dubsar register and plan on it, then export again");

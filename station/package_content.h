@@ -17,6 +17,7 @@
 #include "station/package_features.h"
 #include "station/package_source.h"
 #include "station/results.h"
+#include "station/session_scans.h"
 #include "station/tablet_record.h"
 
 namespace dubsar {
@@ -65,6 +66,8 @@ struct PackageContent {
 
   /// Files of who knows what scanner, not a scanner.
   [[nodiscard]] bool comes_from_files() const { return facts.device.starts_with("replay:"); }
+  /// Scans that name different devices, or some of them none: `facts` knows that of the last one only.
+  [[nodiscard]] bool comes_of_several_devices() const { return devices_of_scans(store).size() > 1; }
   [[nodiscard]] bool has(PackagePart part) const { return !options.without.contains(part); }
   [[nodiscard]] const Results& results() const { return source.results(); }
   [[nodiscard]] const Mesh& mesh() const { return source.results().mesh; }

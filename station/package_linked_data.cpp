@@ -13,6 +13,7 @@
 #include "archive/canvas_annotations.h"
 #include "archive/iiif_manifest.h"
 #include "archive/provenance.h"
+#include "core/utf8.h"
 #include "formats/atomic_file.h"
 #include "formats/draco_mesh.h"
 #include "formats/files_below.h"
@@ -53,6 +54,7 @@ ProvenanceScan scan_of(const PackageContent& content, const StoredScan& scan) {
     out.stored_only = !entry->by_device;
   }
   out.file = scan.damaged ? std::string() : fmt::format("scans/grids/{:03}.grid", scan.id);
+  out.device = one_line(scan.device);
   out.note = fate_of(scan, pose);
   out.in_model = pose != nullptr && pose->status == PoseStatus::kRegistered && !scan.damaged;
   out.values = {{"samples", static_cast<double>(scan.samples), ""},

@@ -139,14 +139,17 @@ Status add_readme(PackageContent& content) {
       .append(std::string(content.identifier.size(), '='))
       .append("\n\n");
   text += folded(
-      fmt::format("{} packed by {} on {}. "
-                  "This folder is the payload of a bag (BagIt 1.0, RFC 8493): manifest-sha512.txt "
-                  "beside it holds the checksum of every file here, so that anybody can tell whether "
-                  "they are still what they were: sha512sum -c manifest-sha512.txt.",
-                  !content.simulated.empty()   ? "SIMULATED. " + content.simulated + " This was"
-                  : content.comes_from_files() ? "A cuneiform tablet, from files of scans,"
-                                               : "A cuneiform tablet, measured by laser triangulation and",
-                  program_name(), content.when),
+      fmt::format(
+          "{} packed by {} on {}. "
+          "This folder is the payload of a bag (BagIt 1.0, RFC 8493): manifest-sha512.txt "
+          "beside it holds the checksum of every file here, so that anybody can tell whether "
+          "they are still what they were: sha512sum -c manifest-sha512.txt.",
+          !content.simulated.empty() ? "SIMULATED. " + content.simulated + " This was"
+          : content.comes_of_several_devices()
+              ? "A cuneiform tablet, measured with several devices (scans/scans.json has that of each) and"
+          : content.comes_from_files() ? "A cuneiform tablet, from files of scans,"
+                                       : "A cuneiform tablet, measured by laser triangulation and",
+          program_name(), content.when),
       0);
   text += "\n";
   text +=

@@ -6,6 +6,7 @@
 #include <ctime>
 #include <nlohmann/json.hpp>
 
+#include "core/utf8.h"
 #include "formats/json_node.h"
 #include "station/results.h"
 
@@ -62,6 +63,15 @@ std::vector<ScanEntry> scan_entries_of(const SessionStore& store) {
     entry.when = entry.by_device ? utc_of(scan.timestamp_ns) : kept;
   }
   return entries;
+}
+
+std::set<std::string> devices_of_scans(const SessionStore& store) {
+  std::set<std::string> devices;
+  const auto scans = store.scans();
+  for (const StoredScan& scan : scans ? *scans : std::vector<StoredScan>()) {
+    devices.insert(one_line(scan.device));
+  }
+  return devices;
 }
 
 }  // namespace dubsar

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <map>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -17,5 +18,8 @@ namespace dubsar {
 
 /// All scans of the session, by id. `when` is by the device's time stamp, else by stored_times().
 [[nodiscard]] std::vector<ScanEntry> scan_entries_of(const SessionStore& store);
+
+/// The devices that the scans name, in one line each; "" among them where some name none.
+[[nodiscard]] std::set<std::string> devices_of_scans(const SessionStore& store);
 
 }  // namespace dubsar

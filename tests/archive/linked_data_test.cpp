@@ -305,6 +305,36 @@ TEST(Provenance, SaysWhoSignedAndWhenScansWithoutATimeWereStored) {
   EXPECT_EQ(person["crm:P3_has_note"], "conservator");
 }
 
+TEST(Provenance, AScanHappenedOnTheDeviceThatItNames) {
+  ProvenanceInput input;
+  input.base_url = "https://example.org/t/";
+  input.program = "Dubsar";
+  input.device = "rig:second.toml";
+  // The device of a scan, or null where it has none.
+  const auto device_of = [&](const std::string& scan) {
+    const auto json = nlohmann::json::parse(provenance_jsonld(input));
+    const auto find = [&](const nlohmann::json& id) {
+      for (const auto& node : json["@graph"]) {
+        if (node["@id"] == id) {
+          return node;
+        }
+      }
+      return nlohmann::json::object();
+    };
+    const nlohmann::json on = find(input.base_url + "provenance/" + scan)
+                                  .value("crmdig:L12_happened_on_device", nlohmann::json::object());
+    return on.contains("@id") ? find(on["@id"])["rdfs:label"] : nlohmann::json();
+  };
+  input.scans = {{0, "", "", "registered", true, {}, false, "first"},
+                 {1, "", "", "registered", true, {}, false, "first"}};
+  EXPECT_EQ(device_of("scan-0"), "rig:second.toml") << "all of one: that of the pages";
+  input.scans.push_back({2, "", "", "registered", true, {}, false, "second"});
+  input.scans.push_back({3, "", "", "registered", true, {}, false, ""});
+  EXPECT_EQ(device_of("scan-1"), "first");
+  EXPECT_EQ(device_of("scan-2"), "second");
+  EXPECT_TRUE(device_of("scan-3").is_null()) << "nobody knows";
+}
+
 TEST(Provenance, EveryFileOfAStepHasItsSource) {
   ProvenanceInput input;
   input.base_url = "https://example.org/t/";

@@ -8,10 +8,12 @@
 
 #include <filesystem>
 #include <fstream>
+#include <nlohmann/json.hpp>
 #include <regex>
 #include <set>
 #include <string>
 
+#include "acquisition/session_store.h"
 #include "tests/station/support/exported.h"
 
 namespace dubsar {
@@ -106,6 +108,33 @@ TEST_F(Export, ASimulatedTabletIsNotPassedOffAsClay) {
     EXPECT_THAT(bytes_of(packed / page), HasSubstr("there is no such tablet")) << page;
   }
   EXPECT_THAT(bytes_of(packed / "README.txt"), Not(HasSubstr("measured by laser")));
+}
+
+TEST_F(ExportOfACopy, OfSeveralDevicesTheLastIsNotGivenTheScansOfTheOthers) {
+  {
+    RangeGrid other = test::bumpy_scan(3);
+    other.device = "second scanner";
+    SessionStore store = SessionStore::open(session_).value();
+    ASSERT_TRUE(store.add_grid(other));
+  }
+  ASSERT_EQ(pack_without("renderings,features,grid-ply,wedges", {}).status, 0);
+  EXPECT_THAT(bytes_of(bag() / "bag-info.txt"), HasSubstr("measured with several devices: "));
+  EXPECT_THAT(readme(),
+              AllOf(HasSubstr("A cuneiform tablet, measured with several devices"),
+                    HasSubstr("Scanned with: replay:scans (the scan that was stored last; the scans name: "
+                              "second scanner; and some name none)")));
+  const auto graph = nlohmann::json::parse(packed("provenance.jsonld"))["@graph"];
+  const auto happened_on = [&](const std::string& scan) {
+    for (const auto& node : graph) {
+      if (node["@id"].get<std::string>().ends_with("/provenance/" + scan)) {
+        return node.contains("crmdig:L12_happened_on_device");
+      }
+    }
+    ADD_FAILURE() << scan;
+    return false;
+  };
+  EXPECT_TRUE(happened_on("scan-3"));
+  EXPECT_FALSE(happened_on("scan-0")) << "it names none, and the last was another";
 }
 
 TEST_F(Export, MeshesAndScansSayWhatTheyAreWhereTheyTravelAlone) {
