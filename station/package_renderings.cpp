@@ -101,11 +101,14 @@ class Drawing {
  public:
   explicit Drawing(PackageContent& content) : content_(content), scene_(content.mesh()) {}
 
+  /// Where the sides fit into pictures at kViewDpi; else says that they do not.
   Status views();
   Status fatcrosses();
   Status rollout();
 
  private:
+  /// Whether every side fits into a picture at kViewDpi.
+  [[nodiscard]] Result<bool> have_room() const;
   [[nodiscard]] Rgb8 ground() const { return content_.options.white_ground ? kPaper : kBlackGround; }
   [[nodiscard]] RenderOptions options(int dpi) const {
     RenderOptions options;
@@ -129,8 +132,23 @@ class Drawing {
   PackageContent& content_;
   RenderScene scene_;
   SixViews clay_;                                                 ///< at kViewDpi, for the fatcross
+  bool has_views_ = false;                                        ///< clay_ is drawn
   std::array<std::vector<WedgeOnPicture>, kFaceCount> wedges_{};  ///< on them, by Face
 };
+
+Result<bool> Drawing::have_room() const {
+  for (const Face face : kSixViewOrder) {
+    const Result<Framing> framing =
+        framing_of(scene_, face_camera(face, content_.tablet_from_model), options(kViewDpi));
+    if (!framing && framing.error().kind == ErrorKind::kUsage) {
+      return false;
+    }
+    if (!framing) {
+      return std::unexpected(framing.error());
+    }
+  }
+  return true;
+}
 
 Result<std::vector<WedgeOnPicture>> Drawing::wedges_on(Face face) const {
   if (!content_.wedges || content_.wedges->wedges.empty()) {
@@ -158,6 +176,15 @@ std::vector<WedgeOnPicture> Drawing::wedges_on_fatcross(FatcrossKind kind) const
 }
 
 Status Drawing::views() {
+  const Result<bool> room = have_room();
+  if (!room) {
+    return std::unexpected(room.error());
+  }
+  if (!*room) {
+    content_.lacking.push_back(fmt::format(
+        "Pictures of the six sides: the tablet is too large for them at {} dots per inch.", kViewDpi));
+    return {};
+  }
   if (const Status had = content_.need_fields(); !had) {
     return had;
   }
@@ -203,6 +230,7 @@ Status Drawing::views() {
     clay_.of[static_cast<std::size_t>(face)] = std::move(images->front());
     wedges_[static_cast<std::size_t>(face)] = std::move(*wedges);
   }
+  has_views_ = true;
   for (std::size_t k = 0; k < looks.size(); ++k) {
     content_.pictures.insert(content_.pictures.end(), listed[k].begin(), listed[k].end());
     content_.list(
@@ -226,10 +254,12 @@ Status Drawing::fatcrosses() {
   constexpr std::array<Kind, 2> kKinds = {
       {{FatcrossKind::kCdli, "cdli", "fatcross (CDLI)"}, {FatcrossKind::kEbl, "ebl", "fatcross (eBL)"}}};
   int done = 0;
+  bool any = false;
   for (const int dpi : kFatcrossDpi) {
     content_.job.progress("drawing fatcrosses", static_cast<double>(done++) / kFatcrossDpi.size());
     SixViews own;
-    if (dpi != kViewDpi) {
+    const bool is_drawn = dpi == kViewDpi && has_views_;
+    if (!is_drawn) {
       SixViewOptions six;
       six.render = options(dpi);
       six.tablet_from_model = content_.tablet_from_model;
@@ -244,7 +274,8 @@ Status Drawing::fatcrosses() {
       }
       own = std::move(*drawn);
     }
-    const SixViews& views = dpi == kViewDpi ? clay_ : own;
+    any = true;
+    const SixViews& views = is_drawn ? clay_ : own;
     std::array<Image, kKinds.size()> sheets;
     std::vector<Task> tasks;
     for (std::size_t k = 0; k < kKinds.size(); ++k) {
@@ -255,7 +286,7 @@ Status Drawing::fatcrosses() {
       const PictureWords said = words(fmt::format("{}, {} dpi, to scale", kKinds[k].label, dpi));
       tasks.push_back({stem + ".tif", [&sheet, said] { return encode_tiff(sheet, said, program_name()); }});
       tasks.push_back({stem + ".jpg", [&sheet, said] { return encode_jpeg(sheet, said); }});
-      if (dpi == kViewDpi) {
+      if (is_drawn) {
         list(stem + ".jpg", kKinds[k].label, "image/jpeg", sheet, wedges_on_fatcross(kKinds[k].kind));
       }
     }
@@ -263,19 +294,26 @@ Status Drawing::fatcrosses() {
       return written;
     }
   }
-  content_.list(
-      "pictures/fatcross/",
-      "all six sides on one picture, to scale throughout: as CDLI and as eBL lay them out, at 300, 600 "
-      "and 1000 pixels to the inch of the tablet, TIFF and JPEG");
+  if (any) {
+    content_.list(
+        "pictures/fatcross/",
+        "all six sides on one picture, to scale throughout: as CDLI and as eBL lay them out, at 300, 600 "
+        "and 1000 pixels to the inch of the tablet, TIFF and JPEG");
+  }
   return {};
 }
 
 Status Drawing::rollout() {
+  constexpr const char* kTooLarge = "Rollout: the tablet is too large for a picture of that scale.";
+  if (!has_views_) {  // it is larger than any of them, and to unroll what is so large takes long
+    content_.lacking.emplace_back(kTooLarge);
+    return {};
+  }
   content_.job.progress("drawing the rollout", 0.0);
   const Result<Image> image =
       rollout_picture(scene_, content_.tablet_from_model, options(kViewDpi), content_.job);
   if (!image && image.error().kind == ErrorKind::kUsage) {
-    content_.lacking.emplace_back("Rollout: the tablet is too large for a picture of that scale.");
+    content_.lacking.emplace_back(kTooLarge);
     return {};
   }
   if (!image) {

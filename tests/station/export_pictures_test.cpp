@@ -2,16 +2,20 @@
 // Copyright The Dubsar developers
 // dubsar export: its pictures of the six sides show one tablet, each in the light that its folder says.
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <png.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <nlohmann/json.hpp>
 #include <regex>
 #include <sstream>
 
+#include "acquisition/session_store.h"
 #include "formats/mesh_io.h"
+#include "formats/sha2.h"
 #include "tests/station/support/exported.h"
 
 namespace dubsar {
@@ -193,6 +197,31 @@ TEST_F(Export, ItsPicturesAreOfOneTabletInFourLights) {
       }
     }
   }
+}
+
+using ExportOfALargeTablet = ExportOfACopy;
+
+TEST_F(ExportOfALargeTablet, ThatFitsIntoNoPictureIsPackedWithoutThem) {
+  {
+    // The session's mesh, 60 times as large: some 1.7 m. Its record is that of the mesh again.
+    SessionStore store = SessionStore::open(session_).value();
+    Mesh mesh = read_mesh(session_ / "mesh/model.ply").value();
+    for (Eigen::Vector3f& p : mesh.positions) {
+      p *= 60.0F;
+    }
+    ASSERT_TRUE(store.replace_file(
+        "mesh/model.ply", [&](const std::filesystem::path& file) { return write_mesh(file, mesh); }));
+    nlohmann::json model = nlohmann::json::parse(store.load_document("model").value().value());
+    model["sha256"] = sha256_hex(bytes_of(session_ / "mesh/model.ply"));
+    ASSERT_TRUE(store.save_document("model", model.dump()));
+  }
+  const test::Outcome done = pack_without("wedges,features,grid-ply", {});
+  ASSERT_EQ(done.status, 0) << done.err;
+  EXPECT_THAT(done.json()["lacking"].dump(),
+              ::testing::HasSubstr("Pictures of the six sides: the tablet is too large for them"));
+  EXPECT_FALSE(std::filesystem::exists(bag() / "data/pictures"));
+  EXPECT_THAT(readme(), ::testing::Not(::testing::HasSubstr("pictures/fatcross/")));
+  EXPECT_EQ(test::run_command({"verify", bag().string()}).status, 0);
 }
 
 }  // namespace
