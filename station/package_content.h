@@ -88,6 +88,8 @@ struct PackageContent {
 [[nodiscard]] std::vector<ProvenanceValue> analysis_parameters(const PackageContent& content);
 /// Which program made what the session keeps; program_name() where that is not known.
 [[nodiscard]] std::string keeper_of(const PackageContent& content);
+/// Which program measured the wedges, as they say themselves. Only where there are wedges.
+[[nodiscard]] std::string measurer_of(const PackageContent& content);
 /// Where inner edges end, and what a person has corrected.
 [[nodiscard]] std::string analysis_note(const WedgeFile& wedges);
 

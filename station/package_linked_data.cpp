@@ -164,7 +164,7 @@ void add_steps(const PackageContent& content, const std::vector<std::string>& pa
          analysis_parameters(content),
          {{"wedges", static_cast<double>(content.wedges->wedges.size()), ""},
           {"hollows rejected", static_cast<double>(content.wedges->rejected.size()), ""}},
-         content.wedges_are_kept ? keeper_of(content) : program_name(),
+         measurer_of(content),
          analysis_note(*content.wedges)},
         input);
   }

@@ -49,6 +49,14 @@ std::string keeper_of(const PackageContent& content) {
   return content.facts.program.empty() ? program_name() : content.facts.program;
 }
 
+std::string measurer_of(const PackageContent& content) {
+  if (!content.wedges_are_kept) {
+    return program_name();
+  }
+  // A version after the one that scanned may have measured them anew: at the signature, say.
+  return content.wedges->program.empty() ? keeper_of(content) : content.wedges->program;
+}
+
 std::vector<ProvenanceValue> registration_parameters(const PackageContent& content) {
   std::vector<ProvenanceValue> out;
   add_spacing(content, out);
@@ -89,7 +97,7 @@ std::vector<ProvenanceValue> stitching_parameters(const PackageContent& content)
 std::vector<ProvenanceValue> analysis_parameters(const PackageContent& content) {
   std::vector<ProvenanceValue> out{
       {"corrections by a person", static_cast<double>(content.wedges->corrections), ""}};
-  if (!content.wedges_are_kept || keeper_of(content) == program_name()) {
+  if (measurer_of(content) == program_name()) {
     const AnalysisOptions options;
     const FreeSurfaceOptions& free = options.fields.free_surface;
     out.push_back({"free surface: mean curvature no further below zero than",
@@ -108,8 +116,9 @@ std::vector<ProvenanceValue> analysis_parameters(const PackageContent& content) 
 }
 
 std::string analysis_note(const WedgeFile& wedges) {
-  const std::string note = wedges.exits == ExitDefinition::kSurface ? "Inner edges end at the free surface."
-                                                              : "Inner edges end where they are seen to.";
+  const std::string note = wedges.exits == ExitDefinition::kSurface
+                               ? "Inner edges end at the free surface."
+                               : "Inner edges end where they are seen to.";
   const std::string by_hand = correction_sentence(wedges);
   return by_hand.empty() ? note : note + " " + by_hand;
 }

@@ -256,6 +256,9 @@ TEST_F(Export, WhatWasCopiedIsThatOfTheProgramThatMadeIt) {
   EXPECT_EQ(program("registration"), "Dubsar 0.0.9");
   EXPECT_EQ(program("verdict"), "Dubsar 0.0.9");
   EXPECT_NE(program("packing"), "Dubsar 0.0.9");
+  const auto wedges = nlohmann::json::parse(bytes_of(at("old_bag") / "data/wedges/wedges.json"));
+  EXPECT_EQ(program("analysis"), wedges["program"].get<std::string>()) << "they say themselves who measured";
+  EXPECT_NE(program("analysis"), "Dubsar 0.0.9");
 }
 
 /// Killed in the very step between taking its place and whatever else it would do, it has to be found done.
