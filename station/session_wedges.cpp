@@ -204,8 +204,12 @@ std::string correction_sentence(const WedgeFile& file) {
 }
 
 SessionWedges counts_of(const WedgeFile& file, fs::path json) {
-  SessionWedges out{std::move(json),           file.wedges.size(), file.rejected.size(),
-                    correction_sentence(file), {},                 make_read_profiles(file.wedges)};
+  SessionWedges out{std::move(json),
+                    file.wedges.size(),
+                    file.rejected.size(),
+                    correction_sentence(file),
+                    {},
+                    make_read_profiles(file.wedges)};
   for (Error& doubt : doubts_of(file, {})) {
     out.doubts.push_back(std::move(doubt.what));
   }

@@ -95,9 +95,8 @@ Result<TabletRecord> parse_tablet_record(std::string_view text, const std::strin
 
 Status keep_tablet_record(SessionStore& store, const TabletRecord& said) {
   TabletRecord record = said;
-  for (const auto field :
-       {&TabletRecord::museum_number, &TabletRecord::cdli, &TabletRecord::collection,
-        &TabletRecord::operator_name, &TabletRecord::rights, &TabletRecord::notes}) {
+  for (const auto field : {&TabletRecord::museum_number, &TabletRecord::cdli, &TabletRecord::collection,
+                           &TabletRecord::operator_name, &TabletRecord::rights, &TabletRecord::notes}) {
     record.*field = std::string(trimmed(record.*field));
   }
   if (const Status checked = check_cdli(record.cdli); !checked) {

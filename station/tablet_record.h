@@ -32,8 +32,9 @@ struct TabletRecord {
 /// For people: name of the field and what it says, empty ones left out.
 [[nodiscard]] std::vector<std::pair<std::string, std::string>> words_of(const TabletRecord& record);
 
-/// Checks it and keeps it in the session, without the blanks around what is said; what was said before stays in the session's events ("tablet
-/// described"), for a number that is mended after the sign-off must not look as if it had always stood there.
+/// Checks it and keeps it in the session, without the blanks around what is said; what was said before stays
+/// in the session's events ("tablet described"), for a number that is mended after the sign-off must not look
+/// as if it had always stood there.
 Status keep_tablet_record(SessionStore& store, const TabletRecord& said);
 /// Empty when none is kept, or it cannot be read.
 [[nodiscard]] TabletRecord tablet_record_of(const SessionStore& store);

@@ -74,12 +74,13 @@ void add_session_sign(CLI::App& session, Action& chosen) {
       "sign", "Put a name under the verdict; status 1 when there is none to sign, or it falls short");
   const auto arguments = std::make_shared<SignArguments>();
   const auto said = CLI::Validator(
-      [](std::string& text) {
-        return trimmed(text).empty() ? "says nothing" : std::string();
-      },
-      "TEXT");
+      [](std::string& text) { return trimmed(text).empty() ? "says nothing" : std::string(); }, "TEXT");
   verb->add_option("session", arguments->path, "a session folder")->required();
-  verb->add_option("--name", arguments->name, "who signs")->required()->check(said)->check(single_line())->check(readable());
+  verb->add_option("--name", arguments->name, "who signs")
+      ->required()
+      ->check(said)
+      ->check(single_line())
+      ->check(readable());
   verb->add_option("--role", arguments->role, "as what")->check(single_line())->check(readable());
   verb->add_option("--note", arguments->note, "anything that a reader should know")->check(readable());
   verb->add_option("--incomplete", arguments->incomplete, "sign although it falls short, and why")
