@@ -96,6 +96,7 @@ TEST(VainLook, NoViewIsPlannedForWhatGaveNoSignalEightTimes) {
   session.scan(turned(0, 0));
   const SurfaceCover cover(session.map.scans());
   RedTargets red;
+  red.cell_mm = 0.75;
   RedTarget& target = red.targets.emplace_back();
   target.position_mm = target.sample_mm = {0, 0, 5};
   target.area_mm2 = 4;
@@ -147,6 +148,7 @@ struct Grazed {
   Grazed() {
     session.scan(turned(0, 0));
     candidates.front().model_from_scanner = turned(68, 0);
+    red.cell_mm = 0.75;
     RedTarget& target = red.targets.emplace_back();
     target.position_mm = {0, 0, 5.5};
     target.area_mm2 = 4;
