@@ -114,9 +114,10 @@ TEST(TurnWords, HandsThatHaveNothingElseMakeTheTurn) {
     const std::string words = said(turn, lies);
     const auto made = made_of(words, lies);
     ASSERT_TRUE(made) << words;
-    // The way is told to half a corner: what that moves the line of sight by, at most, and the rest of a
-    // flip.
-    EXPECT_LT(apart_deg(turn, *made), 48) << words;
+    // The way is told to half a corner, of a tablet that lies askew a little more. Where it goes nearly all
+    // the way over that turns it about the line of sight by twice as much; the line of sight itself is off by
+    // less.
+    EXPECT_LT(apart_deg(turn, *made), 54) << words;
     EXPECT_LT(
         deg_from_rad(std::acos(std::clamp((turn.transpose() * kUp).dot(made->transpose() * kUp), -1.0, 1.0))),
         26)
