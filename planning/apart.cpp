@@ -19,8 +19,9 @@ namespace {
 /// How deep laser and camera see into a hole, in its widths: they stand 15° apart at least.
 constexpr double kDeepestInWidths = 4.0;
 constexpr double kSecondBodyShare = 0.02;  ///< of the elements of the largest part
-/// What was seen of a piece that somebody may want to know of: a chip of 4 x 4 mm. Less is left of pins.
-constexpr double kChipMm2 = 15.0;
+/// What was seen of a piece, at the least, that somebody may want to know of: a chip of 4 x 4 mm. Less is
+/// left of pins.
+constexpr double kChipMm2 = 8.0;
 
 /// A hole of the cover, or a patch of red.
 struct Opening {
@@ -122,7 +123,8 @@ class Pieces {
     return pieces;
   }
 
-  /// How much well-sampled surface each piece has that is not in `clay`.
+  /// How much well-sampled surface each piece has, at the least, that is not in `clay`: elements are a cell
+  /// apart or more.
   [[nodiscard]] std::map<std::uint32_t, double> seen_mm2(const std::set<std::uint32_t>& clay) {
     std::map<std::uint32_t, double> out;
     for (const auto& e : cover_.elements()) {
@@ -206,7 +208,7 @@ std::vector<std::uint8_t> excuse_apart(std::span<const PlacedScan> scans, const 
         red.targets[i].excuse_as_stray();
       } else {
         red.targets[i].excuse_as(Excuse::kUnneeded,
-                                 "it hangs apart from the surface, which is closed there: about " +
+                                 "it hangs apart from the surface, which is closed there: at least " +
                                      std::to_string(std::lround(seen->second)) +
                                      " mm2 of it were seen; a chip is scanned by itself");
       }

@@ -289,8 +289,8 @@ constexpr EnginePhrase kPhrases[] = {
      "zurückholen, was beschädigt ist, oder als unvollständig unterschreiben"},
     {"bring it back, take the scan out, or sign with --incomplete REASON",
      "zurückholen, den Scan entfernen, oder als unvollständig unterschreiben"},
-    {"it hangs apart from the surface, which is closed there: about ",
-     "es hängt getrennt von der Fläche, die dort geschlossen ist: etwa "},
+    {"it hangs apart from the surface, which is closed there: at least ",
+     "es hängt getrennt von der Fläche, die dort geschlossen ist: mindestens "},
     {" mm2 of it were seen; a chip is scanned by itself",
      " mm² davon sind gesehen; ein Splitter wird für sich gescannt"},
     // why a hint is not taken
