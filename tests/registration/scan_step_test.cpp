@@ -127,7 +127,8 @@ TEST_P(RightScan, IsNotToldToHaveMoved) {
 
 INSTANTIATE_TEST_SUITE_P(OfTablets, RightScan,
                          testing::Values(Right{"text", 72, 0.2}, Right{"worn", 73, 0.3},
-                                         Right{"tiny", 74, 0.2}, Right{"blank", 75, 0.2}));
+                                         Right{"tiny", 74, 0.2}, Right{"blank", 75, 0.2}),
+                         [](const auto& one) { return std::string(one.param.kind); });
 
 /// The others are where they were, so that nothing has to be put out; and it is the only one that is told.
 TEST(ScanStep, IsToldBesideThePose) {
