@@ -288,15 +288,10 @@ bool ScanModel::place(int as, const RigidTransform& model_from_as, bool locked, 
   const bool apart = leave(id);
   scan.fault_reason.clear();
   int main = main_group();
-  if (const std::optional<int> stood_in = std::exchange(scan.stood_in, std::nullopt)) {
-    // Where nothing is left of it, no other group says where its frame is.
-    main = members(*stood_in).empty() ? scan.group : *stood_in;
-  } else {
-    for (const int group : groups_by_size()) {
-      if (main == scan.group && group != main) {
-        main = group;
-        break;
-      }
+  for (const int group : groups_by_size()) {
+    if (main == scan.group && group != main) {
+      main = group;
+      break;
     }
   }
   scan.locked_as = locked ? std::set{as} : std::set<int>{};

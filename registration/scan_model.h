@@ -107,11 +107,8 @@ class ScanModel {
     std::optional<std::vector<ReliefRepeat>> relief_repeats;  ///< likewise
     int group = 0;
     RigidTransform group_from_scanner;
-    std::set<int> locked_as;  ///< its ids under which the operator fixed it
-    bool given = false;       ///< joins from where it is or not at all
-    /// The group of the one of the same id that it replaces, where that was the model: until it is placed, in
-    /// whose frame its pose is given.
-    std::optional<int> stood_in;
+    std::set<int> locked_as;   ///< its ids under which the operator fixed it
+    bool given = false;        ///< joins from where it is or not at all
     std::string reason;        ///< why it does not join; empty when it has joined or was not tried
     std::string hint_reason;   ///< why its hint led to no pose
     std::string fault_reason;  ///< why it was taken out of the model when it was last in it

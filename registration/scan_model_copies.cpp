@@ -88,9 +88,6 @@ bool ScanModel::take_in(int id, const RangeGrid* grid, const PinSet* pins, bool 
   };
   const auto before = scans_.find(stands_as(id));
   const bool is_replaced = before != scans_.end() && is_same(*before);
-  const bool was_model =
-      before != scans_.end() && before->second.usable && before->second.group == main_group();
-  const std::optional<int> stood_in = was_model ? std::optional(before->second.group) : std::nullopt;
   remove(id, job);
   std::map<int, Copy> others;
   std::map<int, RigidTransform> others_from;
@@ -117,7 +114,6 @@ bool ScanModel::take_in(int id, const RangeGrid* grid, const PinSet* pins, bool 
   }
   enter(id, grid, pins);
   scans_.at(id).print = std::move(print);
-  scans_.at(id).stood_in = stood_in;
   copies_.merge(others);
   for (const auto& [other, from] : others_from) {
     set_scan_from(other, from);

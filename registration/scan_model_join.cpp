@@ -30,7 +30,6 @@ bool half_sure(const ModelFit& fit, const VerifyOptions& options) {
 }  // namespace
 
 bool ScanModel::join(int id, JobContext& job) {
-  scans_.at(id).stood_in.reset();
   if (!scans_.at(id).usable) {
     return false;
   }

@@ -154,33 +154,6 @@ TEST(Hints, AWrongWordIsNeverBelieved) {
   EXPECT_EQ(registrar.add(1, scanned(surface, truth, 9), nullptr, job).status, PoseStatus::kRegistered);
 }
 
-/// As when its pins are labelled. What does not fit it says nothing of where it lies, and is not in its
-/// place.
-TEST(Hints, ALockedScanThatIsTakenInAnewTakesNoOtherFrame) {
-  const auto surface = bumpy(23);
-  const auto other = bumpy(214);
-  const auto locked = scanned(surface, {}, 1);
-  Registrar registrar;
-  JobContext job;
-  ASSERT_EQ(registrar.add(0, locked, nullptr, job).status, PoseStatus::kRegistered);
-  ASSERT_TRUE(registrar.set_locked(0, true));
-  for (const int id : {1, 2}) {  // at first one that does not fit, then more of them than are locked
-    registrar.add(id,
-                  scanned(other, id == 1 ? RigidTransform{} : pose_of(8, 4, 40, {1, -2, 0}),
-                          8U + static_cast<unsigned>(id)),
-                  nullptr, job);
-    ASSERT_NE(pose_in(registrar, id).status, PoseStatus::kRegistered);
-    const RigidTransform before = pose_in(registrar, 0).model_from_scanner;
-    const ScanPose again = registrar.add_at(0, locked, nullptr, before, true, job);
-    EXPECT_EQ(again.status, PoseStatus::kRegistered);
-    EXPECT_TRUE(again.locked);
-    EXPECT_EQ(again.model_from_scanner.row_major(), before.row_major());
-    for (int k = 1; k <= id; ++k) {
-      EXPECT_NE(pose_in(registrar, k).status, PoseStatus::kRegistered) << k;
-    }
-  }
-}
-
 /// The operator clicked on the wrong places for scan 1: that one is in doubt, nothing else.
 TEST(Hints, AWrongWordLeavesOutNeitherTheScanThatItIsGivenOnNorTheOthers) {
   const auto surface = bumpy(27);
