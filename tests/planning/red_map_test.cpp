@@ -267,7 +267,8 @@ TEST(RedMap, WhatSomeViewWouldClearIsNoLastSpeckThoughNoneIsProposed) {
   EXPECT_FALSE(result->map.conclusive);
 }
 
-TEST(RedMap, ALastSpeckIsNoLargerThanHalfAWedge) {
+/// Two places far from each other, once the last specks are excused.
+RedTargets two_last_specks(double first_mm2, double second_mm2, bool first_gives_signal) {
   Session session;
   session.scan(turned(0, 0));
   RedTargets red;
@@ -275,27 +276,22 @@ TEST(RedMap, ALastSpeckIsNoLargerThanHalfAWedge) {
   for (const double x : {-5.0, 5.0}) {
     RedTarget& target = red.targets.emplace_back();
     target.position_mm = target.sample_mm = {x, 0, 4.6};
-    target.area_mm2 = x < 0 ? 0.4 : 0.6;
+    target.area_mm2 = x < 0 ? first_mm2 : second_mm2;
+    target.no_signal = x < 0 && !first_gives_signal;
   }
   constexpr double kSurfaceMm2 = 1e6;
   excuse_last_specks(session.map.scans(), SurfaceCover(session.map.scans()), 0.0, kSurfaceMm2, {}, red);
+  return red;
+}
+
+TEST(RedMap, ALastSpeckIsNoLargerThanHalfAWedge) {
+  const RedTargets red = two_last_specks(0.4, 0.6, true);
   EXPECT_EQ(red.targets[0].excuse, Excuse::kUnneeded);
   EXPECT_EQ(red.targets[1].state, RegionState::kRed);
 }
 
 TEST(RedMap, WhatGivesNoSignalIsNoLastSpeck) {
-  Session session;
-  session.scan(turned(0, 0));
-  RedTargets red;
-  red.cell_mm = 0.75;
-  for (const double x : {-5.0, 5.0}) {
-    RedTarget& target = red.targets.emplace_back();
-    target.position_mm = target.sample_mm = {x, 0, 4.6};
-    target.area_mm2 = 0.3;
-    target.no_signal = x < 0;
-  }
-  constexpr double kSurfaceMm2 = 1e6;
-  excuse_last_specks(session.map.scans(), SurfaceCover(session.map.scans()), 0.0, kSurfaceMm2, {}, red);
+  const RedTargets red = two_last_specks(0.3, 0.3, false);
   EXPECT_EQ(red.targets[0].state, RegionState::kRed);
   EXPECT_EQ(red.targets[1].excuse, Excuse::kUnneeded);
 }

@@ -12,7 +12,6 @@
 #include "core/random.h"
 #include "registration/registrar.h"
 #include "registration/scan_motion.h"
-#include "tests/support/other_forms.h"
 
 namespace dubsar {
 namespace {
@@ -81,26 +80,6 @@ TEST(ScanMotion, IsLookedForAgainWhenAnotherScanIsTakenOutAndForgottenWithTheSca
   const ScanPose again = registrar.add(1, still_scans()[1].grid, nullptr, job);
   EXPECT_EQ(again.status, PoseStatus::kRegistered) << again.reason;
   EXPECT_TRUE(again.reason.empty());
-}
-
-/// What was cut out of it slipped as well: that the two fit each other clears neither.
-TEST(ScanMotion, IsToldBesideAPartOfTheScan) {
-  JobContext job;
-  Registrar registrar;
-  const std::shared_ptr<const RangeGrid> whole = slipped(*still_scans()[1].grid, {0, 0, 1.0F});
-  for (std::size_t k = 0; k < still_scans().size(); ++k) {
-    registrar.add(static_cast<int>(k), k == 1 ? whole : still_scans()[k].grid, nullptr, job);
-  }
-  registrar.add(20, std::make_shared<const RangeGrid>(test::cropped(*whole, 0.05, 0.9)), nullptr, job);
-  ASSERT_TRUE(registrar.finalize(job));
-  for (const ScanPose& pose : registrar.poses()) {
-    if (pose.id == 1) {
-      EXPECT_NE(pose.status, PoseStatus::kRegistered);
-      EXPECT_NE(pose.reason.find("moved during the scan, after"), std::string::npos) << pose.reason;
-    } else if (pose.id != 20) {
-      EXPECT_EQ(pose.status, PoseStatus::kRegistered) << pose.id << pose.reason;
-    }
-  }
 }
 
 /// The check comes last; what it has not come to is looked at the next time.

@@ -15,7 +15,6 @@
 #include "core/units.h"
 #include "registration/registrar.h"
 #include "registration/scan_step.h"
-#include "tests/support/other_forms.h"
 
 namespace dubsar {
 namespace {
@@ -145,27 +144,6 @@ TEST(ScanStep, IsToldBesideThePose) {
     if (pose.id == static_cast<int>(kMoved)) {
       EXPECT_THAT(pose.warning, StartsWith("the tablet or the scanner moved during the scan, after about"));
     } else {
-      EXPECT_EQ(pose.warning, "") << pose.id;
-    }
-  }
-}
-
-/// What was cut out of a scan moved with it: it neither clears that scan nor accuses the others with it.
-TEST(ScanStep, IsToldBesideAPartOfTheScan) {
-  constexpr int kPart = 20;
-  const bench::Move push{{0, 0, -0.3}, {-0.15, 0, 0}, 0.3};
-  const std::shared_ptr<const RangeGrid> moved = bench::moved_scan(*still_scans()[kMoved].grid, push);
-  JobContext job;
-  Registrar registrar;
-  for (std::size_t k = 0; k < still_scans().size(); ++k) {
-    registrar.add(static_cast<int>(k), k == kMoved ? moved : still_scans()[k].grid, nullptr, job);
-  }
-  registrar.add(kPart, std::make_shared<const RangeGrid>(test::cropped(*moved, 0.05, 0.9)), nullptr, job);
-  ASSERT_TRUE(registrar.finalize(job));
-  for (const ScanPose& pose : registrar.poses()) {
-    if (pose.id == static_cast<int>(kMoved)) {
-      EXPECT_THAT(pose.warning, StartsWith("the tablet or the scanner moved during the scan, after about"));
-    } else if (pose.id != kPart) {
       EXPECT_EQ(pose.warning, "") << pose.id;
     }
   }

@@ -108,14 +108,19 @@ class RunningEngine {
   std::thread thread_;
 };
 
-// Of several commands in a row the first's next step is not told as the one to press the key for.
-TEST(EngineCommands, ThinksAllOfThemOverBeforeItWaitsAgain) {
-  const test::TemporaryFolder folder;
+/// A rig with motors that waits for the key before each scan.
+EngineOptions driven(const test::TemporaryFolder& folder) {
   EngineOptions options;
   options.device = "sim:?seed=1&size=20x16x8&spacing=0.25&noise=0.02";
   options.session = folder.path() / "session";
   options.automatic = options.paced = true;
-  RunningEngine engine(options);
+  return options;
+}
+
+// Of several commands in a row the first's next step is not told as the one to press the key for.
+TEST(EngineCommands, ThinksAllOfThemOverBeforeItWaitsAgain) {
+  const test::TemporaryFolder folder;
+  RunningEngine engine(driven(folder));
   ASSERT_TRUE(engine.waits(1));
   ASSERT_TRUE(engine.post(LockScan{0}));
   ASSERT_TRUE(engine.post(UnlockScan{0}));
@@ -139,11 +144,7 @@ TEST(EngineCommands, ThinksAllOfThemOverBeforeItWaitsAgain) {
 // Whatever is said of a scan, it was driven to: planner and motors go on by that.
 TEST(EngineCommands, AScanThatIsPutBackIsTakenAgainFromWhereItWasDrivenTo) {
   const test::TemporaryFolder folder;
-  EngineOptions options;
-  options.device = "sim:?seed=1&size=20x16x8&spacing=0.25&noise=0.02";
-  options.session = folder.path() / "session";
-  options.automatic = options.paced = true;
-  RunningEngine engine(options);
+  RunningEngine engine(driven(folder));
   ASSERT_TRUE(engine.waits(1));
   ASSERT_TRUE(engine.post(DropScan{0, "by mistake"}));
   ASSERT_TRUE(engine.post(RestoreScan{0}));

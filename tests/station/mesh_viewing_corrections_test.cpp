@@ -27,6 +27,18 @@ using ::testing::StartsWith;
 using test::Viewer;
 using MeshViewingCorrections = test::OnAViewedTablet;
 
+/// Asks for it and stops it while it is measured.
+WedgeCorrection stop_a_deletion(MeshViewing& viewing, const fs::path& mesh, const Eigen::Vector3d& at_mm) {
+  viewing.open(mesh);
+  test::settle(viewing);
+  WedgeCorrection gone;
+  gone.at_mm = {at_mm};
+  viewing.correct(gone);
+  viewing.stop();
+  test::settle(viewing);
+  return gone;
+}
+
 TEST_F(MeshViewingCorrections, ACorrectionThatAnotherProgramMadeMeanwhileStays) {
   Viewer one(mesh_);
   Viewer other(mesh_);
@@ -275,13 +287,7 @@ TEST_F(MeshViewingCorrections, OneThatIsClosedWhileItIsMeasuredIsNotedAndMadeAtT
 
 TEST_F(MeshViewingCorrections, OneThatIsStoppedIsNotedSaidAndMadeWhenItIsSaidAgain) {
   MeshViewing viewing([] {});
-  viewing.open(mesh_);
-  test::settle(viewing);
-  WedgeCorrection gone;
-  gone.at_mm = {wedges_mm_[0]};
-  viewing.correct(gone);
-  viewing.stop();
-  test::settle(viewing);
+  const WedgeCorrection gone = stop_a_deletion(viewing, mesh_, wedges_mm_[0]);
   EXPECT_EQ(noted(), 1U);
   EXPECT_EQ(viewing.state().corrections, 1U);
   ASSERT_THAT(viewing.state().not_made, SizeIs(1));
@@ -297,13 +303,7 @@ TEST_F(MeshViewingCorrections, OneThatIsStoppedIsNotedSaidAndMadeWhenItIsSaidAga
 
 TEST_F(MeshViewingCorrections, OneThatIsStoppedIsWrittenAlsoWhereTheNextOneCannotBeMade) {
   MeshViewing viewing([] {});
-  viewing.open(mesh_);
-  test::settle(viewing);
-  WedgeCorrection gone;
-  gone.at_mm = {wedges_mm_[0]};
-  viewing.correct(gone);
-  viewing.stop();
-  test::settle(viewing);
+  stop_a_deletion(viewing, mesh_, wedges_mm_[0]);
   ASSERT_EQ(noted(), 1U);
   WedgeCorrection nowhere;
   nowhere.at_mm = {Eigen::Vector3d(500, 500, 500)};

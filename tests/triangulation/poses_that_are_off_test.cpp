@@ -11,14 +11,12 @@
 #include <map>
 #include <utility>
 
-#include "core/grid_rows.h"
 #include "core/random.h"
 #include "sim/scanner.h"
 #include "tests/triangulation/support/ball_scans.h"
 #include "tests/triangulation/support/evenly_spread.h"
 #include "tests/triangulation/support/simulated_tablet.h"
 #include "triangulation/mesh_check.h"
-#include "triangulation/stage_passes.h"
 
 namespace dubsar {
 namespace {
@@ -119,25 +117,6 @@ TEST(PosesThatAreOff, OneThatIsFixedStaysAndTheOthersAreLaidAgainstIt) {
   const Stitcher both = holding(set);
   EXPECT_FALSE(both.moved_mm().contains(0) || both.moved_mm().contains(2));
   EXPECT_TRUE(std::ranges::any_of(both.overlaps(), [](const Stitcher::Overlap& o) { return o.is_off(); }));
-}
-
-/// One pose puts all passes of a scan where they are: that they agree says nothing of it.
-TEST(PosesThatAreOff, OneWhoseStageStoodStillIsNotHeldByItsOwnPasses) {
-  const test::ScanSet once = ball_with_one_off(kOff);
-  RangeGrid twice;  // each row of the third
-  for (int row = 0; row < once.grids[2].rows; ++row) {
-    const RangeGrid one = rows_of(once.grids[2], row, 1);
-    ASSERT_TRUE(append_rows(twice, one));
-    ASSERT_TRUE(append_rows(twice, one));
-  }
-  ASSERT_GE(stage_passes(twice, twice.spacing_mm).size(), 2U);
-  test::ScanSet set;
-  for (std::size_t k = 0; k < once.placed.size(); ++k) {
-    set.add(k == 2 ? twice : once.grids[k], once.placed[k].model_from_scanner);
-  }
-  const std::map<int, double> moved_mm = holding(set).moved_mm();
-  ASSERT_TRUE(moved_mm.contains(2));
-  EXPECT_NEAR(moved_mm.at(2), kOff.norm(), 0.05);
 }
 
 TEST(PosesThatAreOff, OneSaysSoInSigmaAndReliabilityThoughNobodyToldIt) {
