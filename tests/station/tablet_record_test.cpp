@@ -42,9 +42,12 @@ TEST(TabletRecord, BlanksSayNothing) {
   const test::TemporaryFolder folder;
   Result<SessionStore> store = SessionStore::open_or_create(folder.path() / "session");
   ASSERT_TRUE(store) << store.error().line();
-  TabletRecord record;
-  record.museum_number = " BM 1\t";
-  record.rights = "  ";
+  const TabletRecord record{.museum_number = " BM 1\t",
+                            .cdli = "",
+                            .collection = "",
+                            .operator_name = "",
+                            .rights = "  ",
+                            .notes = ""};
   ASSERT_TRUE(keep_tablet_record(*store, record));
   EXPECT_EQ(tablet_record_of(*store).museum_number, "BM 1");
   EXPECT_EQ(tablet_record_of(*store).rights, "");
