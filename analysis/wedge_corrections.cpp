@@ -83,6 +83,11 @@ class Corrector {
         return std::unexpected(
             fmt::format("no wedge lies at {:.3f}, {:.3f}, {:.3f} any more", place.x(), place.y(), place.z()));
       }
+      if (ids_.is_of_one_gone(place, nearest->id)) {
+        return std::unexpected(fmt::format(
+            "the wedge that lay at {:.3f}, {:.3f}, {:.3f} is no more: wedge {} beside it is another",
+            place.x(), place.y(), place.z(), nearest->id));
+      }
       ids.insert(nearest->id);
     }
     return ids;

@@ -44,6 +44,7 @@ WedgeIds::WedgeIds(const EarlierWedges& earlier) : may_be_others_(earlier.may_be
   }
   std::ranges::sort(known_, {}, &KnownWedge::id);
   is_now_.assign(known_.size(), 0);
+  earlier_ = known_;
 }
 
 /// Sets the ids of those that lie where an earlier one lay. What a better mesh shows by itself may have been
@@ -89,6 +90,7 @@ void WedgeIds::know_again(const std::vector<Wedge>& found, std::vector<int>* ids
   const std::size_t most = std::min(measured, found.size());
   if (may_be_others_ && most >= kFewest && 2 * same.size() < most) {
     known_.clear();
+    earlier_.clear();
     is_now_.clear();
     next_ = 0;
     forgot_earlier_ = true;
@@ -140,6 +142,23 @@ int WedgeIds::of_made(const Wedge& made) {
   ++found_again_;
   give(same, made);
   return known_[same].id;
+}
+
+bool WedgeIds::is_of_one_gone(const Eigen::Vector3d& place_mm, int id) const {
+  const auto own = std::ranges::find(earlier_, id, &KnownWedge::id);
+  if (own == earlier_.end()) {
+    return false;  // where it lay nobody knows
+  }
+  const auto off_mm = [&](const KnownWedge& one) { return (one.depth_point_mm - place_mm).norm(); };
+  const double own_off_mm = off_mm(*own);
+  for (std::size_t k = 0; k < earlier_.size(); ++k) {
+    // What a person made comes later than what is said of those that were measured.
+    if (is_now_[k] == 0 && earlier_[k].by_hand == ByHand::kNo && off_mm(earlier_[k]) <= kSamePlaceMm &&
+        off_mm(earlier_[k]) < own_off_mm) {
+      return true;
+    }
+  }
+  return false;
 }
 
 std::vector<KnownWedge> WedgeIds::former(const std::vector<Wedge>& left) const {

@@ -28,6 +28,10 @@ class WedgeIds {
   /// one that was measured and now had to be added.
   [[nodiscard]] int of_made(const Wedge& made);
 
+  /// Whether that place was an earlier one's that the mesh shows no more, and not the one's that has this id:
+  /// it lay nearer. To be asked after of_found().
+  [[nodiscard]] bool is_of_one_gone(const Eigen::Vector3d& place_mm, int id) const;
+
   /// How many of the earlier ones were found where they lay, or made there anew.
   [[nodiscard]] std::size_t found_again() const { return found_again_; }
   /// They were taken for another tablet's.
@@ -43,6 +47,7 @@ class WedgeIds {
   [[nodiscard]] int give_new(const Wedge& wedge);
 
   std::vector<KnownWedge> known_;     ///< earlier ones by rising id, then new ones
+  std::vector<KnownWedge> earlier_;   ///< the earlier ones of these where they lay
   std::vector<std::uint8_t> is_now_;  ///< [known_] one of now has the id
   bool may_be_others_ = false;
   int next_ = 0;

@@ -283,6 +283,31 @@ TEST(WedgeCorrections, WhatCannotBeMadeSaysWhyAndChangesNothing) {
   EXPECT_THAT(reason(split), HasSubstr("does not lie in the wedge"));
 }
 
+TEST(WedgeCorrections, OfADoubleThatABetterMeshShowsNoMoreTheTrueWedgeStays) {
+  // Earlier another wedge was measured beside wedge 4, and deleted.
+  WedgeOptions options;
+  for (const Wedge& wedge : found().set.wedges) {
+    options.earlier.wedges.push_back({wedge.id, wedge.depth_point_mm, ByHand::kNo});
+  }
+  WedgeCorrection of_double = delete_of({4});
+  of_double.at_mm[0].x() += 0.6 * kSamePlaceMm;
+  options.earlier.wedges.push_back({1000, of_double.at_mm[0], ByHand::kNo});
+  options.corrections = {of_double};
+  const auto settled = [&] {
+    return settle_wedges(found().mesh, found().graph, found().fields, options, found().findings);
+  };
+  WedgeSet set = settled();
+  ASSERT_EQ(set.lost.size(), 1U);
+  EXPECT_THAT(set.lost.front().reason, HasSubstr("wedge 4 beside it is another"));
+  expect_others_untouched(set, {});
+  // Who means the true one by the place where it lay is heard.
+  options.corrections = {of_double, delete_of({4})};
+  set = settled();
+  ASSERT_EQ(set.lost.size(), 1U);
+  EXPECT_EQ(set.lost.front().index, 0U);
+  expect_others_untouched(set, {4});
+}
+
 TEST(WedgeCorrections, OfAMeshMadeAnewTheyFindTheirPlacesAgain) {
   // The same tablet, every vertex moved a little: what was said of the one holds of the other.
   Mesh moved = found().mesh;

@@ -365,6 +365,9 @@ constexpr EnginePhrase kPhrases[] = {
     // why a wedge is not what somebody says
     {"no wedge lies at ", "kein Keil liegt bei "},
     {" any more", " mehr"},
+    {"the wedge that lay at ", "den Keil, der bei "},
+    {" is no more: wedge ", " lag, gibt es nicht mehr: Keil "},
+    {" beside it is another", " daneben ist ein anderer"},
     {"these are one wedge already", "das ist schon ein Keil"},
     {"they are not measured as one wedge: ", "sie lassen sich nicht als ein Keil messen: "},
     {"no one wedge holds them all: wedge ", "kein Keil enthält sie alle: Keil "},
