@@ -7,6 +7,7 @@
 #include "formats/json_text.h"
 #include "formats/self_checked.h"
 #include "formats/writers_turn.h"
+#include "formats/xxh128.h"
 
 namespace dubsar {
 
@@ -81,6 +82,10 @@ std::string corrections_to_json(const CorrectionFile& file) {
     root["corrections"].push_back(std::move(json));
   }
   return root.dump(-1, ' ', false, OrderedJson::error_handler_t::replace) + "\n";
+}
+
+std::string corrections_digest(const std::vector<WedgeCorrection>& corrections) {
+  return xxh128_hex(corrections_to_json({{}, corrections}));
 }
 
 Status write_corrections(const std::filesystem::path& path, const CorrectionFile& file) {

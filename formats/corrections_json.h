@@ -22,6 +22,8 @@ struct CorrectionFile {
 [[nodiscard]] std::filesystem::path corrections_file_of(const std::filesystem::path& wedges_json);
 
 [[nodiscard]] std::string corrections_to_json(const CorrectionFile& file);
+/// Others have another one; XXH3 (128 bits) of their JSON.
+[[nodiscard]] std::string corrections_digest(const std::vector<WedgeCorrection>& corrections);
 [[nodiscard]] Status write_corrections(const std::filesystem::path& path, const CorrectionFile& file);
 /// The same where the file still says what was `known` when these were made, so that nobody's correction is
 /// lost. Errors: kUsage when another program has changed them meanwhile, kBadInput when the file cannot be

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "formats/atomic_file.h"
+#include "formats/corrections_json.h"
 #include "formats/file_label_reader.h"
 #include "formats/json_node.h"
 #include "formats/json_text.h"
@@ -71,6 +72,11 @@ std::optional<WedgeProfile> profile_from(const JsonNode& node) {
 
 }  // namespace
 
+bool has_corrections(const WedgeFile& file, const std::vector<WedgeCorrection>& corrections) {
+  return file.corrections == corrections.size() &&
+         (file.corrections_xxh128.empty() || file.corrections_xxh128 == corrections_digest(corrections));
+}
+
 std::string wedges_to_json(const WedgeFile& file) {
   OrderedJson root;
   root["unit"] = "mm";
@@ -126,7 +132,11 @@ std::string wedges_to_json(const WedgeFile& file) {
     for (const LostCorrection& one : file.lost) {
       lost.push_back({{"number", one.index + 1}, {"reason", one.reason}});
     }
-    root["corrections"] = {{"asked_for", file.corrections}, {"lost", std::move(lost)}};
+    root["corrections"]["asked_for"] = file.corrections;
+    if (!file.corrections_xxh128.empty()) {
+      root["corrections"]["xxh128"] = file.corrections_xxh128;
+    }
+    root["corrections"]["lost"] = std::move(lost);
   }
   root["timings_s"] = OrderedJson::object();
   for (const auto& [stage, seconds] : file.timings_s) {
@@ -207,6 +217,9 @@ Result<WedgeFile> parse_wedges(std::string_view text, const std::string& where) 
   if (const auto corrections = root.find("corrections")) {
     constexpr std::int64_t kMost = std::numeric_limits<std::int32_t>::max();
     file.corrections = static_cast<std::size_t>(corrections->at("asked_for").integer(0, kMost));
+    if (const auto digest = corrections->find("xxh128")) {
+      file.corrections_xxh128 = digest->text();
+    }
     for (const JsonNode& node : corrections->at("lost").items()) {
       file.lost.push_back(
           {static_cast<std::size_t>(node.at("number").integer(1, kMost) - 1), node.at("reason").text()});

@@ -34,6 +34,7 @@ struct WedgeFile {
   std::vector<KnownWedge> former;  ///< ids of wedges that are no more, and are given to no other
   std::vector<RejectedWedge> rejected;
   std::size_t corrections = 0;       ///< how many a person has asked for
+  std::string corrections_xxh128;    ///< corrections_digest() of them; empty: not said
   std::vector<LostCorrection> lost;  ///< those of them that could not be made
   /// Text's frame: x to the reader's right, y up the obverse, z out of it (analysis/text_frame.h).
   std::optional<RigidTransform> text_from_model;
@@ -42,6 +43,10 @@ struct WedgeFile {
   std::vector<WedgeProfile> profiles;
   StageTimes timings_s;
 };
+
+/// Whether these are the corrections that a person had asked for when the wedges were measured. A file that
+/// says nothing but their number is taken at that.
+[[nodiscard]] bool has_corrections(const WedgeFile& file, const std::vector<WedgeCorrection>& corrections);
 
 [[nodiscard]] std::string wedges_to_json(const WedgeFile& file);
 [[nodiscard]] Status write_wedges(const std::filesystem::path& path, const WedgeFile& file);

@@ -12,6 +12,7 @@
 #include "analysis/wedge_features.h"
 #include "core/log.h"
 #include "core/parallel.h"
+#include "formats/corrections_json.h"
 #include "station/results.h"
 
 namespace dubsar {
@@ -89,6 +90,9 @@ WedgeFile wedge_file(std::string mesh_name, const AnalysisOptions& options, cons
   file.profiles = make_profiles(file.wedges);
   file.rejected = analysis.set.rejected;
   file.corrections = options.wedges.corrections.size();
+  if (file.corrections > 0) {
+    file.corrections_xxh128 = corrections_digest(options.wedges.corrections);
+  }
   file.lost = analysis.set.lost;
   file.text_from_model = analysis.text.text_from_model;
   file.text_certainty = analysis.text.certainty;

@@ -96,7 +96,7 @@ void MeshViewing::take_corrections(const fs::path& wedges_file, bool in_session)
   analysis_options_.wedges.earlier.wedges = known_wedges(file.wedges, file.former);
   const bool since =
       count > 0 && fs::last_write_time(corrections_file, error) > fs::last_write_time(wedges_file_, error);
-  const bool is_old = since || count != file.corrections;
+  const bool is_old = since || !has_corrections(file, analysis_options_.wedges.corrections);
   take_wedges(std::move(file));
   if (is_old && measure_all()) {
     take_measured_wedges();
@@ -113,16 +113,17 @@ void MeshViewing::finish_corrections() {
     return;
   }
   const Result<CorrectionFile> said = read_corrections(note);
-  const std::size_t count = analysis_options_.wedges.corrections.size();
-  std::size_t made = 0;
+  const std::vector<WedgeCorrection>& now = analysis_options_.wedges.corrections;
+  bool is_made = now.empty();
   if (fs::is_regular_file(wedges_file_, error)) {
     const Result<WedgeFile> known = read_wedges(wedges_file_);
     if (!known || !(known->mesh.empty() || are_of(*known, state().name))) {
       return;
     }
-    made = known->corrections;
+    is_made = has_corrections(*known, now);
   }
-  if (!said || said->corrections.size() != count || made == count || !check_outside_packages(wedges_file_)) {
+  if (!said || corrections_digest(said->corrections) != corrections_digest(now) || is_made ||
+      !check_outside_packages(wedges_file_)) {
     return;
   }
   if (const Status written = write_corrected(); !written) {

@@ -73,7 +73,7 @@ Status add_corrections(PackageContent& content) {
     return keep_damaged(content, kCorrectionsByHand, *bytes, file.error());
   }
   const std::size_t count = file->corrections.size();
-  const bool made = content.wedges && content.wedges->corrections == count;
+  const bool made = content.wedges && has_corrections(*content.wedges, file->corrections);
   return content.text(
       kPackedCorrections, *bytes,
       fmt::format(

@@ -5,6 +5,8 @@
 #include <gmock/gmock.h>
 #include <sys/resource.h>
 
+#include <algorithm>
+#include <chrono>
 #include <csignal>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -283,6 +285,32 @@ TEST_F(MeshViewingCorrections, OneThatIsClosedWhileItIsMeasuredIsNotedAndMadeAtT
   EXPECT_THAT(*Viewer(mesh_).state().wedges, SizeIs(wedges_mm_.size()));
   EXPECT_EQ(read_wedges(file)->corrections, 0U);
   EXPECT_THAT(read_wedges(file)->wedges, SizeIs(wedges_mm_.size()));
+}
+
+/// As where one was taken back and another said, and both were stopped.
+TEST_F(MeshViewingCorrections, OthersOfTheSameNumberAreMadeAtTheNextOpening) {
+  const fs::path file = mesh_.parent_path() / "tablet.wedges.json";
+  Viewer(mesh_).remove_wedge(wedges_mm_[0]);
+  ASSERT_EQ(read_wedges(file)->corrections, 1U);
+  WedgeCorrection other;
+  other.at_mm = {wedges_mm_[1]};
+  ASSERT_TRUE(write_corrections(corrections_, {"tablet.ply", {other}}));
+  // As of copied files, whose times say nothing.
+  fs::last_write_time(corrections_, fs::last_write_time(file) - std::chrono::hours(1));
+  Viewer viewer(mesh_);
+  EXPECT_FALSE(viewer.state().error) << viewer.state().error->line();
+  ASSERT_TRUE(viewer.state().wedges);
+  const WedgeFile written = *read_wedges(file);
+  EXPECT_TRUE(has_corrections(written, {other}));
+  for (const std::vector<Wedge>& wedges : {*viewer.state().wedges, written.wedges}) {
+    EXPECT_THAT(wedges, SizeIs(wedges_mm_.size() - 1));
+    const auto is_there = [&](const Eigen::Vector3d& place_mm) {
+      return std::ranges::any_of(
+          wedges, [&](const Wedge& wedge) { return (wedge.depth_point_mm - place_mm).norm() < 1e-6; });
+    };
+    EXPECT_TRUE(is_there(wedges_mm_[0]));
+    EXPECT_FALSE(is_there(wedges_mm_[1]));
+  }
 }
 
 TEST_F(MeshViewingCorrections, OneThatIsStoppedIsNotedSaidAndMadeWhenItIsSaidAgain) {
