@@ -95,11 +95,15 @@ bool under_balls(const Eigen::Vector3d& point, const std::vector<Found>& balls,
   return false;
 }
 
+std::unexpected<Error> cancelled(const RangeGrid& grid) {
+  return fail(ErrorKind::kCancelled, "verification cancelled", grid.source);
+}
+
 /// The ball of this diameter with the most samples on it. `free` says of each cell of the grid whether its
-/// sample is still to be had.
+/// sample is still to be had. Nothing also where the job was cancelled.
 std::optional<Found> find_ball(const RangeGrid& grid, const std::vector<std::uint8_t>& free,
                                double diameter_mm, double form_limit_mm, const Eigen::Vector3d& towards,
-                               Random& random) {
+                               Random& random, const JobContext& job) {
   std::vector<std::size_t> cells;
   std::vector<Eigen::Vector3d> points;
   for (std::size_t i = 0; i < free.size(); ++i) {
@@ -122,6 +126,9 @@ std::optional<Found> find_ball(const RangeGrid& grid, const std::vector<std::uin
   // Counting on a part of the samples is enough to choose between candidates.
   const std::size_t stride = std::max<std::size_t>(1, points.size() / 4000);
   for (int i = 0; i < kTries; ++i) {
+    if (job.cancelled()) {
+      return std::nullopt;
+    }
     const std::size_t seed = random.below(cells.size());
     const Eigen::Vector3d& a = points[seed];
     std::array<Eigen::Vector3d, 3> others;
@@ -197,8 +204,10 @@ std::vector<std::size_t> assigned(const std::vector<Found>& found, const Artefac
   return best;
 }
 
+/// Ends early where the job is cancelled.
 void measure_plane(const std::vector<Eigen::Vector3d>& points, const std::vector<Found>& balls,
-                   const Artefact& artefact, const Eigen::Vector3d& towards, Verification& out) {
+                   const Artefact& artefact, const Eigen::Vector3d& towards, const JobContext& job,
+                   Verification& out) {
   const Result<PlaneFit> fit = fit_plane(points);
   if (!fit) {
     out.failed.emplace_back("the plane was not found");
@@ -227,6 +236,9 @@ void measure_plane(const std::vector<Eigen::Vector3d>& points, const std::vector
   const double up = fit->plane.normal.dot(towards) > 0 ? 1 : -1;
   const PlaneOutline outline(fit->plane, beside);
   for (const Eigen::Vector3d& p : points) {
+    if (job.cancelled()) {
+      return;
+    }
     const double d = fit->plane.signed_distance_mm(p);
     if (std::abs(d) >= little && outline.inside(p) && !(up * d > 0 && under_balls(p, balls, towards))) {
       out.plane_left_out.add(std::abs(d));
@@ -295,7 +307,7 @@ double Verification::worst_mm() const {
   return worst;
 }
 
-Result<Verification> verify_artefact(const RangeGrid& grid, const Artefact& artefact) {
+Result<Verification> verify_artefact(const RangeGrid& grid, const Artefact& artefact, const JobContext& job) {
   std::vector<std::uint8_t> free = grid.valid;
   if (grid.valid_count() == 0) {
     return bad_input(grid.source, "there is not a single sample in the scan", "scan the artefact again");
@@ -306,7 +318,10 @@ Result<Verification> verify_artefact(const RangeGrid& grid, const Artefact& arte
   std::vector<Found> found;
   for (const Artefact::Ball& wanted : artefact.balls) {
     std::optional<Found> ball =
-        find_ball(grid, free, wanted.diameter_mm, artefact.form_limit_mm, towards, random);
+        find_ball(grid, free, wanted.diameter_mm, artefact.form_limit_mm, towards, random, job);
+    if (job.cancelled()) {
+      return cancelled(grid);
+    }
     if (!ball) {
       break;
     }
@@ -348,7 +363,10 @@ Result<Verification> verify_artefact(const RangeGrid& grid, const Artefact& arte
         points.push_back(grid.point(i).cast<double>());
       }
     }
-    measure_plane(points, found, artefact, towards, out);
+    measure_plane(points, found, artefact, towards, job, out);
+  }
+  if (job.cancelled()) {  // nothing is known of what was not looked at
+    return cancelled(grid);
   }
   judge(artefact, out);
   return out;

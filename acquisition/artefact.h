@@ -69,7 +69,8 @@ struct Verification {
 /// squares; three in a thousand samples may be left out, as the guideline allows, more fail. Of a ball what
 /// is within 60° of the view counts, and three quarters of that have to be seen. A plane whose size is known
 /// has to be seen over nine tenths of both its sides: the flatness of a small part is always good. Errors
-/// (kBadInput): no sample at all.
-[[nodiscard]] Result<Verification> verify_artefact(const RangeGrid& grid, const Artefact& artefact);
+/// (kBadInput): no sample at all; kCancelled.
+[[nodiscard]] Result<Verification> verify_artefact(const RangeGrid& grid, const Artefact& artefact,
+                                                   const JobContext& job = {});
 
 }  // namespace dubsar

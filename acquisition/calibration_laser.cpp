@@ -42,6 +42,23 @@ PlaneFit through(const std::vector<Eigen::Vector3d>& points_mm, const std::vecto
   return fit;
 }
 
+/// Enough to choose between candidates: all of them, or of many a part, drawn evenly over all.
+std::vector<Eigen::Vector3d> part_of(const std::vector<Eigen::Vector3d>& points_mm) {
+  constexpr std::size_t kEnough = 8000;
+  if (points_mm.size() <= kEnough) {
+    return points_mm;
+  }
+  Random random(2);
+  std::vector<Eigen::Vector3d> out;
+  out.reserve(kEnough);
+  for (std::size_t k = 0; k < kEnough; ++k) {  // at random: every so many could be one column of a grid
+    const std::size_t first = k * points_mm.size() / kEnough;
+    const std::size_t next = (k + 1) * points_mm.size() / kEnough;
+    out.push_back(points_mm[first + random.below(next - first)]);
+  }
+  return out;
+}
+
 double median_distance(const Plane& plane, const std::vector<Eigen::Vector3d>& points_mm) {
   std::vector<double> distances;
   distances.reserve(points_mm.size());
@@ -100,6 +117,7 @@ Result<PlaneFit> fit_plane(const std::vector<Eigen::Vector3d>& points_mm) {
         "take pictures with the laser on the board, bright but not saturated");
   }
   constexpr int kTries = 400;
+  const std::vector<Eigen::Vector3d> judges_mm = part_of(points_mm);
   Random random(1);
   Plane best;
   double least = 1e300;
@@ -112,7 +130,7 @@ Result<PlaneFit> fit_plane(const std::vector<Eigen::Vector3d>& points_mm) {
       continue;
     }
     const Plane plane{normal.normalized(), normal.normalized().dot(a)};
-    const double median = median_distance(plane, points_mm);
+    const double median = median_distance(plane, judges_mm);
     if (median < least) {
       least = median;
       best = plane;

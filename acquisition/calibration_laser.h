@@ -32,8 +32,8 @@ struct PlaneFit {
 [[nodiscard]] PlaneFit least_squares_plane(const std::vector<Eigen::Vector3d>& points_mm);
 
 /// A plane through points of which up to a third may be wrong: three-point samples (seeded), then total least
-/// squares over what lies within three times the median distance. Errors (kBadInput): fewer than 10 points,
-/// or all on a line.
+/// squares over what lies within three times the median distance. Samples are judged by a part of many
+/// points. Errors (kBadInput): fewer than 10 points, or all on a line.
 [[nodiscard]] Result<PlaneFit> fit_plane(const std::vector<Eigen::Vector3d>& points_mm);
 
 }  // namespace dubsar

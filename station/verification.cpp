@@ -164,7 +164,7 @@ Result<VerifyOutcome> verify_rig(const VerifyRequest& request, JobContext& job) 
     }
     out.camera_unknown = scan->recorded && !log->camera_serial.empty() && camera_of(scan->grid, *log).empty();
   }
-  Result<Verification> is = verify_artefact(scan->grid, out.artefact);
+  Result<Verification> is = verify_artefact(scan->grid, out.artefact, job);
   if (!is) {
     return std::unexpected(is.error());
   }

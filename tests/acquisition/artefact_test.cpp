@@ -226,6 +226,18 @@ TEST(Artefact, WhatIsNotThereIsSaid) {
   EXPECT_FALSE(verify_artefact(empty, bar()).has_value());
 }
 
+TEST(Artefact, OneThatIsStoppedGivesNoVerdict) {
+  JobContext job;
+  job.cancel();
+  Artefact plate = bar();
+  plate.balls.clear();
+  for (const Artefact& artefact : {bar(), plate}) {
+    const Result<Verification> is = verify_artefact(scanned_bar(0.004, 0, 1), artefact, job);
+    ASSERT_FALSE(is.has_value());
+    EXPECT_EQ(is.error().kind, ErrorKind::kCancelled);
+  }
+}
+
 TEST(SphereFit, ThroughFourPointsAndThroughMany) {
   const Eigen::Vector3d middle(3, -2, 7);
   std::vector<Eigen::Vector3d> points;
