@@ -25,7 +25,8 @@ struct ExcuseOptions {
   /// Red that covers less than this many µ² is a speck: of the size that noise makes; `speck_tries` settle
   /// it.
   double speck_spacings2 = 10.0;
-  double speck_budget = 2e-4;  ///< of the surface, for all specks together
+  /// Of the surface: all that is still red when the last specks go, and all slits and pits together.
+  double speck_budget = 2e-4;
   int speck_tries = 2;
   double tried_speck_budget = 1e-3;  ///< of the surface, for all that are settled by looks together
   double largest_slit_mm2 = 0.5;     ///< half the footprint of the smallest wedge, 1 mm across
@@ -65,7 +66,8 @@ void excuse_strays(std::span<const PlacedScan> scans, std::span<const double> no
 /// What nothing will clear and hangs together over more than largest_slit_mm2 is unreachable where by the
 /// model no pose has a good look at it. Where one has, it stays red and is named (RedTarget::no_signal): ink,
 /// gloss or a deep hole, which a person tells apart. Smaller places are unneeded as long as all of them
-/// together stay below speck_budget: most could be seen into from some pose, but hide no sign.
+/// together, by whichever of these rules, stay below speck_budget (RedTargets::slits_mm2): most could be seen
+/// into from some pose, but hide no sign.
 
 /// By pose limits: no pose that the rig allows is expected to sample the place. best_chance as in NextViews,
 /// over all candidates; entries below 0 were not judged and stay red.

@@ -181,8 +181,8 @@ void excuse_specks(std::span<const PlacedScan> scans, const SurfaceCover& cover,
 namespace {
 
 /// Settles red targets that nothing will clear: those of large groups are unreachable, or stay red and are
-/// named where they lie in the open; those of small ones are unneeded as long as all of them together stay
-/// below speck_budget, and stay red otherwise.
+/// named where they lie in the open; those of small ones are unneeded as long as all of them together, also
+/// those that were given up before for another reason, stay below speck_budget, and stay red otherwise.
 template <class GivenUp, class InTheOpen>
 void give_up(std::span<const PlacedScan> scans, const SurfaceCover& cover, double surface_mm2,
              const ExcuseOptions& options, const std::string& why, const GivenUp& given_up,
@@ -204,9 +204,11 @@ void give_up(std::span<const PlacedScan> scans, const SurfaceCover& cover, doubl
       }
     }
   }
-  if (area_of(slits, red) > options.speck_budget * surface_mm2) {
+  const double all_mm2 = red.slits_mm2 + area_of(slits, red);
+  if (all_mm2 > options.speck_budget * surface_mm2) {
     return;
   }
+  red.slits_mm2 = all_mm2;
   for (const std::uint32_t i : slits) {
     excuse_speck(cover, "slit or pit of less than a wedge's size: " + why, red.targets[i]);
   }

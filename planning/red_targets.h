@@ -64,6 +64,7 @@ struct RedTargets {
   std::vector<RedSampleRef> samples;  ///< by target, then scan, then sample
   /// Edge of the cells that red samples were gathered in: of the coarsest scan, the greatest.
   double cell_mm = 0;
+  double slits_mm2 = 0;  ///< of those that are unneeded as slits or pits: all together have one budget
 };
 
 struct RedTargetOptions {

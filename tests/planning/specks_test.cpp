@@ -65,6 +65,26 @@ TEST_F(Specks, ThoseThatLooksSettleHaveABudgetToo) {
   EXPECT_EQ(excused(targets, 900), 3U) << "the smallest first: 0.2 + 0.3 + 0.3 of 0.9 mm2";
 }
 
+TEST_F(Specks, SlitsHaveOneBudgetWhicheverRuleGivesThemUp) {
+  const SurfaceCover cover(session_.map.scans());
+  const auto given_up = [&](double surface_mm2) {
+    RedTargets red;
+    red.cell_mm = kCellMm;
+    red.targets = {tried_twice({-5, 0, 4.6}, 0.15), tried_twice({5, 0, 4.6}, 0.15)};
+    for (const double deg : {60.0, 90.0}) {
+      const Eigen::Vector3d towards = turned(deg, 0).rotation.col(2);
+      red.targets[0].tried.push_back({towards, towards, 1.0});
+    }
+    excuse_tried(session_.map.scans(), cover, surface_mm2, {}, red);
+    EXPECT_EQ(red.targets[0].excuse, Excuse::kUnneeded);
+    const std::vector<float> best_chance = {1.0F, 0.0F};
+    excuse_out_of_reach(session_.map.scans(), cover, best_chance, surface_mm2, {}, red);
+    return std::ranges::count(red.targets, RegionState::kExcused, &RedTarget::state);
+  };
+  EXPECT_EQ(given_up(1600), 2) << "0.3 of 0.32 mm2";
+  EXPECT_EQ(given_up(1000), 1) << "0.15 of 0.2 mm2, and not 0.3";
+}
+
 TEST_F(Specks, BesideClayThatNobodyHasSeenThereIsNone) {
   const RedTarget speck = tried_twice({0, 0, 5}, 0.3);
   RedTarget patch;
