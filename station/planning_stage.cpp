@@ -177,6 +177,20 @@ bool PlanningStage::knows_how_it_lies() const {
   return then && now && then->placement == now->placement;
 }
 
+std::optional<int> PlanningStage::turns_go_from() const {
+  const std::vector<PlacedScan> scans = cleared_.scans();
+  const std::optional<StageState> state = stage();
+  if (scans.empty() || (state && knows_how_it_lies())) {
+    return std::nullopt;
+  }
+  const int from = state ? state->scan_id : scans.back().id;
+  const int newest = scans_.rbegin()->first;
+  const bool has_place = std::ranges::any_of(poses_, [newest](const ScanPose& pose) {
+    return pose.id == newest && pose.status == PoseStatus::kRegistered;
+  });
+  return newest > from && !has_place ? std::optional(from) : std::nullopt;
+}
+
 std::optional<NextView> PlanningStage::before_lifting(const Rig& rig, const NextView& next) const {
   const double from_the_side = rad_from_deg(40.0);
   const std::optional<StageState> state = stage();
@@ -357,6 +371,13 @@ Result<RedMap> PlanningStage::red_map(const Rig* rig, JobContext& job) {
   Result<RedMapResult> result = make_red_map(scans, nullptr, rig, options, job);
   if (!result) {
     return std::unexpected(result.error());
+  }
+  if (const std::optional<int> from = turns_go_from()) {
+    for (NextView& view : result->map.next) {
+      if (!view.placement || view.placement->hand_turn) {
+        view.say = "from how it lay for scan " + std::to_string(*from) + ": " + view.say;
+      }
+    }
   }
   result->map.copies = copies();
   result->map.apart = groups_apart(poses_, scans);

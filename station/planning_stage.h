@@ -121,6 +121,9 @@ class PlanningStage {
   void take_out(int id);
   [[nodiscard]] std::optional<ViewGain> gain_of_new(std::span<const PlacedScan> scans) const;
   [[nodiscard]] std::optional<StageState> stage() const;
+  /// The scan from which turns by hand are told, where a newer one has no place: who turned the tablet for
+  /// that one would take them to go from how it lies now. Else nothing.
+  [[nodiscard]] std::optional<int> turns_go_from() const;
   /// As placed; else by what the motors and the asked turns say.
   [[nodiscard]] std::optional<PlacedScan> where_driven(int id) const;
 

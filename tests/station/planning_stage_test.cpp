@@ -82,6 +82,27 @@ TEST(PlanningStage, KnowsNotHowATabletLiesThatWasTurnedForAScanWithoutAPlace) {
   }
 }
 
+/// The tablet may have been turned for the scan that has no place, and lies as it lies there.
+TEST(PlanningStage, ATurnByHandSaysFromWhichScanItGoesWhereTheNewestHasNoPlace) {
+  PlanningStage stage;
+  for (int k = 0; k < 3; ++k) {
+    stage.add(prepare_scan(k, test::bumpy_scan(k), std::nullopt));
+  }
+  JobContext job;
+  for (const PoseStatus newest : {PoseStatus::kRegistered, PoseStatus::kUnsure}) {
+    std::vector<ScanPose> poses = poses_with(0.01);
+    poses.back().status = newest;
+    ASSERT_TRUE(stage.place(poses, true, job));
+    const Result<RedMap> map = stage.red_map(nullptr, job);
+    ASSERT_TRUE(map);
+    ASSERT_FALSE(map->next.empty());
+    for (const NextView& view : map->next) {
+      EXPECT_EQ(view.say.find("from how it lay for scan 1: ") == 0, newest == PoseStatus::kUnsure)
+          << view.say;
+    }
+  }
+}
+
 /// Red map, mesh and checklist see the scan once, and the copy is told.
 TEST(PlanningStage, ACopyIsTheScanThatItIsOf) {
   PlanningStage stage;

@@ -47,6 +47,7 @@ constexpr EnginePhrase kTurns[] = {
     {" mm from its middle towards the top edge", " mm von der Mitte zum oberen Rand hin"},
     {" mm from its middle towards the bottom edge", " mm von der Mitte zum unteren Rand hin"},
     {" under the scanner", " unter den Scanner legen"},
+    {"from how it lay for ", "von der Lage bei "},
     {"leave the tablet as it lies", "die Tafel liegen lassen"},
     {"turn the tablet where it lies, ", "die Tafel drehen, wo sie liegt, "},
     {" counter-clockwise seen from the camera", " gegen den Uhrzeigersinn, von der Kamera aus"},
