@@ -351,6 +351,15 @@ void tell_scale(const PageBlock& cross, PageBlock& below) {
   }
 }
 
+/// When the page says that it was made: what is packed later is that page still. Else the document's date.
+std::string made(std::string_view html, const PdfInfo& info) {
+  constexpr std::string_view kBefore = "<dt>Made</dt><dd>";
+  const std::size_t before = html.find(kBefore);
+  const std::size_t from = before == std::string_view::npos ? before : before + kBefore.size();
+  const std::size_t to = before == std::string_view::npos ? before : html.find('<', from);
+  return to == std::string_view::npos ? info.when : std::string(html.substr(from, to - from));
+}
+
 }  // namespace
 
 Result<std::vector<std::uint8_t>> page_pdf(std::string_view html, const PdfInfo& info) {
@@ -359,7 +368,7 @@ Result<std::vector<std::uint8_t>> page_pdf(std::string_view html, const PdfInfo&
     return std::unexpected(sheet.error());
   }
   // The figures of the date beside those of an Arabic title are no part of it.
-  Setter setter(*sheet, isolated(sheet->spelt(info.title)) + ", " + sheet->spelt(info.when));
+  Setter setter(*sheet, isolated(sheet->spelt(info.title)) + ", " + sheet->spelt(made(html, info)));
   std::vector<PageBlock> blocks = page_blocks(html);
   for (PageBlock& block : blocks) {
     spell(*sheet, block);

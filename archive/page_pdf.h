@@ -12,9 +12,9 @@
 namespace dubsar {
 
 /// A page of archive/report.h, which is HTML, as a PDF/A-1b on A4: the same words, tables and pictures in the
-/// same order, page numbers at the foot. The six views are life size where they fit on one sheet, and what
-/// the page says of their size is said of that sheet. The same page gives the same bytes. Errors: kUsage
-/// where the fonts are not installed, kInternal.
+/// same order, at the foot of each sheet its number, the title and when the page was made. The six views are
+/// life size where they fit on one sheet, and what the page says of their size is said of that sheet. The
+/// same page gives the same bytes. Errors: kUsage where the fonts are not installed, kInternal.
 [[nodiscard]] Result<std::vector<std::uint8_t>> page_pdf(std::string_view html, const PdfInfo& info);
 
 }  // namespace dubsar

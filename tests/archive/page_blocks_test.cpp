@@ -140,6 +140,22 @@ void expect_for_archives(const std::vector<std::uint8_t>& pdf) {
       << "PDF/A-1b; to be held against it needs Java and PDFBox's Preflight (packages.txt)";
 }
 
+/// A page that is packed long after it was made has one time, not two.
+TEST(PagePdf, AtTheFootIsTheTimeThatThePageSays) {
+  const auto pdf = page_pdf("<h1>Tablet</h1><dl>\n<dt>Made</dt><dd>2025-12-31T23:59:59Z</dd>\n</dl>",
+                            {"Tablet", "Dubsar", "2026-01-02T03:04:05Z"});
+  ASSERT_TRUE(pdf) << pdf.error().line();
+  const test::TemporaryFolder folder;
+  write(folder.path() / "page.pdf", *pdf);
+  const auto says = [&](const std::string& words) {
+    const std::string search =
+        "pdftotext '" + (folder.path() / "page.pdf").string() + "' - | grep -q '" + words + "'";
+    return std::system(search.c_str()) == 0;
+  };
+  EXPECT_TRUE(says("2025-12-31T23:59:59Z")) << "install poppler-utils (packages.txt)";
+  EXPECT_FALSE(says("2026-01-02"));
+}
+
 TEST(PagePdf, IsForArchives) {
   Image seen_through = filled_image(40, 30, {200, 100, 50}, 4);
   for (std::size_t k = 3; k < seen_through.bytes.size(); k += 8) {
