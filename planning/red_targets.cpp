@@ -18,6 +18,10 @@ namespace dubsar {
 
 namespace {
 
+/// Cells that a gap may have: far more than the longest one has at any spacing, for where the far rim is not
+/// found the near one counts as the border of what was seen.
+constexpr double kMostReach = 1e6;
+
 /// One red sample, model frame.
 struct Red {
   std::uint32_t scan = 0;
@@ -37,7 +41,7 @@ class GapReader {
         flags_(*scan.flags),
         spacing_mm_(std::max(spacing_of(*scan.grid), 1e-9)),
         longest_gap_mm_(longest_gap_mm),
-        reach_(static_cast<int>(std::clamp(longest_gap_mm / spacing_mm_, 2.0, 60.0))) {}
+        reach_(static_cast<int>(std::clamp(longest_gap_mm / spacing_mm_, 2.0, kMostReach))) {}
 
   /// Area, normal and place (scanner frame) of what is missing around a sample.
   void read(std::size_t i, Eigen::Vector3d& position, Eigen::Vector3d& normal, double& area) const {
