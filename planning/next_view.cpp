@@ -253,7 +253,7 @@ Result<NextViews> next_views(std::span<const ViewCandidate> candidates, const Sc
       return fail(ErrorKind::kCancelled, "planning was stopped");
     }
     const std::size_t end = std::min(begin + kBatch, order.size());
-    if (!out.ranked.empty() || gain[order[begin]] < options.least_gain_mm2) {
+    if (out.ranked.size() >= options.ranked || gain[order[begin]] < options.least_gain_mm2) {
       break;
     }
     std::vector<double> overlap(end - begin);

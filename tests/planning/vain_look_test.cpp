@@ -192,6 +192,30 @@ TEST(VainLook, WhatIsThinnedOutIsJudgedToo) {
   EXPECT_GE(views.best_chance[4], 0.05F);
 }
 
+/// Where the first may not be driven to, the next one is.
+TEST(VainLook, OthersAreProposedThoughTheMostWorthyOverlapTooLittle) {
+  Session session;
+  session.scan(turned(0, 0));
+  std::vector<RedTarget> targets(2);
+  targets[0].position_mm = targets[0].sample_mm = {0, 0, 5};
+  targets[0].area_mm2 = 1;
+  targets[1].position_mm = targets[1].sample_mm = {0, 0, -5};
+  targets[1].normal = {0, 0, -1};
+  targets[1].area_mm2 = 5;
+  std::vector<ViewCandidate> candidates(30);
+  for (std::size_t i = 0; i < 23; ++i) {
+    candidates[i].model_from_scanner = turned(180, 0);
+  }
+  JobContext job;
+  const NextViews views = next_views(candidates, ScannerModel::of(*session.grids.front(), 0.02),
+                                     model_surface(session.map.scans()), targets, {}, job)
+                              .value();
+  EXPECT_EQ(views.ranked.size(), 5U);
+  for (const NextView& view : views.ranked) {
+    EXPECT_LT(view.predicted_cleared_mm2, 2) << "of the side that was seen";
+  }
+}
+
 /// A rig tells where laser and camera stand at a grid's middle row, and where they stand now.
 TEST(VainLook, AScanLookedFromWhereItsOwnLaserStood) {
   Session session;
