@@ -126,6 +126,18 @@ Status load_session(const fs::path& path, const ScanSetOptions& options, const S
   return {};
 }
 
+/// A scan may go by another name than that of its file, as in a package: the file is what counts.
+Status check_not_written_over(const fs::path& file, const ScanSetOptions& options) {
+  for (const fs::path& output : options.outputs) {
+    std::error_code not_there;
+    if (!output.empty() && fs::equivalent(file, output, not_there)) {
+      return fail(ErrorKind::kUsage, "a scan would be written over", output.string(),
+                  "give the output a name of its own");
+    }
+  }
+  return {};
+}
+
 Status load_folder(const fs::path& path, const ScanSetOptions& options, const ScanVisitor& visit,
                    ScanSet& set, JobContext& job) {
   DeviceUri uri;
@@ -145,6 +157,9 @@ Status load_folder(const fs::path& path, const ScanSetOptions& options, const Sc
     job.progress("reading scans", std::min(1.0, read / count));
     Result<std::optional<RangeGrid>> grid = source->next([](const RangeGrid&, int) {}, job);
     if (!grid && grid.error().kind == ErrorKind::kBadInput) {
+      if (Status apart = check_not_written_over(grid.error().where, options); !apart) {
+        return apart;
+      }
       set.left_out.push_back(grid.error());  // a bad file does not stop the others, nor shift their numbers
       ++set.numbered;
       continue;
@@ -164,10 +179,8 @@ Status load_folder(const fs::path& path, const ScanSetOptions& options, const Sc
     grid->reset();
     std::error_code not_there;
     prepared.read_from = fs::absolute(source->record().file, not_there).lexically_normal();
-    const fs::path folder = fs::is_directory(path, not_there) ? path : path.parent_path();
-    if (!options.output.empty() && fs::equivalent(folder / prepared.file, options.output, not_there)) {
-      return fail(ErrorKind::kUsage, "a scan would be written over", options.output.string(),
-                  "give the output a name of its own");
+    if (Status apart = check_not_written_over(source->record().file, options); !apart) {
+      return apart;
     }
     if (const Status kept = keep(std::move(prepared), options, visit, set); !kept) {
       return kept;

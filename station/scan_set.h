@@ -36,9 +36,9 @@ struct ScanSetOptions {
   std::string unit{};                 ///< one of kLengthUnits; empty: the file's own word, else mm
   std::filesystem::path pins_file{};  ///< empty: the session's, or none
   SessionStore::Access access = SessionStore::Access::kReadWrite;  ///< of a session
-  /// A file that is going to be written: kUsage where it is one of a folder's scans, which cannot be made
-  /// again.
-  std::filesystem::path output{};
+  /// Files that are going to be written (empty: none): kUsage where one of them is a file of a folder's
+  /// scans, readable or not, which cannot be made again.
+  std::vector<std::filesystem::path> outputs{};
   /// A session of which no scan can be read is a set without scans, not an error: the rest of it is wanted.
   bool may_be_empty = false;
   /// The set was read before: what there is to say of its files was said.

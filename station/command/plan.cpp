@@ -260,7 +260,14 @@ Result<int> plan(const PlanArguments& arguments, CommandContext& context) {
   if (const Status good = arguments.set.check_unit(arguments.set.poses); !good) {
     return std::unexpected(good.error());
   }
-  const ScanSetOptions how = arguments.set.reading();
+  // Any PLY of points in a folder is a scan of it.
+  if (std::error_code not_there;
+      !arguments.states.empty() && fs::equivalent(arguments.states, arguments.set.path, not_there)) {
+    return fail(ErrorKind::kUsage, "states of samples would be read as scans of this folder",
+                arguments.states, "give them a folder of their own");
+  }
+  ScanSetOptions how = arguments.set.reading();
+  how.outputs.emplace_back(arguments.page);
   const bool may_write = how.access == SessionStore::Access::kReadWrite;
   Result<ScanSet> set = load_scan_set(arguments.set.path, how, context.job);
   if (!set) {

@@ -34,7 +34,7 @@ struct ScanSetArguments {
     }
     verb.fallthrough();
   }
-  [[nodiscard]] ScanSetOptions options() const { return {.unit = unit, .pins_file = pins, .output = out}; }
+  [[nodiscard]] ScanSetOptions options() const { return {.unit = unit, .pins_file = pins, .outputs = {out}}; }
   /// --unit says nothing of a session, whose grids are in millimetres; but of a .conf that is named with it.
   [[nodiscard]] Status check_unit(const std::filesystem::path& poses_file) const {
     if (unit.empty() || is_conf(poses_file) || !SessionStore::is_session(path)) {

@@ -165,6 +165,38 @@ TEST_F(Outputs, ReplaceNoScanOfTheFolderThatIsRead) {
   }
 }
 
+/// In a package's `scans/ply` a scan is called after the file that it once came from.
+TEST_F(Outputs, ReplaceNoScanThatGoesByAnotherNameThanItsFile) {
+  const fs::path scans = beside("scans");
+  ASSERT_EQ(
+      run_command({"simulate", "scans", "--tablet", mesh(), "--views", "1", "--spacing", "0.05", "-o", scans})
+          .status,
+      0);
+  const fs::path scan = scans / "000.ply";
+  const fs::path cut_short = scans / "001.ply";
+  std::string named = bytes_of(scans / "scan_000.ply");
+  named.insert(named.find("element vertex"), "obj_info dubsar_source first.ply\n");
+  fs::remove(scans / "scan_000.ply");
+  std::ofstream(scan, std::ios::binary) << named;
+  std::ofstream(cut_short, std::ios::binary) << named.substr(0, named.size() / 2);
+  const std::string half = bytes_of(cut_short);
+  for (const fs::path& output : {scan, cut_short}) {
+    for (const Arguments& arguments : {Arguments{"register", scans, "-o", output},
+                                       {"plan", scans, "-o", output},
+                                       {"plan", scans, "--page", output},
+                                       {"stitch", scans, "-o", output}}) {
+      const Outcome outcome = run_command(arguments);
+      EXPECT_EQ(outcome.status, 2) << outcome.err;
+      EXPECT_THAT(outcome.err, HasSubstr("a scan would be written over")) << arguments.front();
+      EXPECT_TRUE(bytes_of(scan) == named && bytes_of(cut_short) == half) << arguments.front();
+    }
+  }
+  const Outcome among = run_command({"plan", scans, "--states", scans});
+  EXPECT_EQ(among.status, 2) << among.err;
+  EXPECT_THAT(among.err, HasSubstr("would be read as scans of this folder"));
+  EXPECT_FALSE(fs::exists(scans / "states_000.ply"));
+}
+
 TEST_F(Outputs, WithoutAFolderToLieInAreRefusedAtOnce) {
   const std::string nowhere = beside("resluts").string();
   for (const Arguments& arguments :
