@@ -115,6 +115,7 @@ Result<Taken> take_scan_by_scan(const ScanSetArguments& arguments, Stitcher& sti
     }
     ++taken.scans;
     taken.names[scan.id] = scan.file;
+    taken.files[scan.id] = scan.read_from;
     if (file) {
       scale.add(*scan.grid, pose->model_from_scanner);
     }
@@ -168,6 +169,9 @@ Result<Taken> take_registered(const ScanSetArguments& arguments, Stitcher& stitc
     return std::unexpected(poses.error());
   }
   Taken taken;
+  for (const StationScan& scan : set->scans) {
+    taken.files[scan.id] = scan.read_from;
+  }
   for (const ScanPose& pose : *poses) {
     if (pose.status == PoseStatus::kRegistered) {
       taken.names[pose.id] = pose.file;
@@ -206,14 +210,11 @@ int tell_done(const StitchArguments& arguments, const std::vector<LeftOutScan>& 
   return falls_short(left_out) ? 1 : 0;
 }
 
-Result<FileLabel> label_of(const std::string& path, const std::map<int, std::string>& names) {
+Result<FileLabel> label_of(const std::string& path, const Taken& taken) {
   if (!SessionStore::is_session(path)) {
-    std::error_code ignored;
-    const std::filesystem::path set = path;
-    const bool is_folder = std::filesystem::is_directory(set, ignored);
     std::vector<std::filesystem::path> grids;
-    for (const auto& [id, name] : names) {
-      grids.push_back(is_folder ? set / name : set);
+    for (const auto& [id, name] : taken.names) {
+      grids.push_back(taken.files.at(id));
     }
     return label_of_files(grids);
   }
@@ -251,7 +252,7 @@ Result<int> stitch_all(const ScanSetArguments& arguments, const StitchStamp& sta
   if (const std::optional<Error> wrong_way = inside_out(*mesh, arguments.out)) {
     log_warning(wrong_way->line());
   }
-  const Result<FileLabel> label = label_of(arguments.path, taken->names);
+  const Result<FileLabel> label = label_of(arguments.path, *taken);
   if (!label) {
     return std::unexpected(label.error());
   }

@@ -21,7 +21,9 @@ namespace dubsar {
 /// What a stitcher was given.
 struct Taken {
   std::size_t scans = 0;
-  std::map<int, std::string> names;   ///< of those, by id
+  std::map<int, std::string> names;  ///< of those, by id
+  /// That the scans of a folder were read from, by id: a scan may be called otherwise. Of others, too.
+  std::map<int, std::filesystem::path> files;
   bool lacks_poses = false;           ///< of a scan that has not been judged yet: then the rest was not taken
   std::vector<ScanPose> poses;        ///< of those
   std::set<int> without_sigma;        ///< of those whose poses say nothing of how far they may be off

@@ -293,6 +293,22 @@ TEST_F(StitchCommand, AMeshOfAFolderSaysWhatAllItsScansSay) {
   EXPECT_THAT(words_of_mesh(), ElementsAre(Pair("SIMULATED", HasSubstr("there is no such tablet"))));
 }
 
+/// Those of a package's `scans/ply` keep the names of the files that they once came from.
+TEST_F(StitchCommand, AMeshOfScansThatGoByOtherNamesThanTheirFilesSaysWhatTheySay) {
+  for (int k = 0; k < 3; ++k) {
+    RangeGrid grid = test::bumpy_scan(k);
+    grid.source = "first_" + test::scan_name(k);
+    GridPlyOptions options;
+    options.keep_source = true;
+    options.label = label_of_words({{"SIMULATED", "no tablet"}, {"Museum number", "BM 1"}});
+    ASSERT_TRUE(write_grid_ply(at("scans") + "/" + test::scan_name(k), grid, options));
+  }
+  const Outcome outcome = stitched();
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_THAT(read_file_label(at("mesh.ply")).words,
+              ElementsAre(Pair("SIMULATED", "no tablet"), Pair("Museum number", "BM 1")));
+}
+
 TEST_F(StitchCommand, WritesNoMeshOfNoFaces) {
   fs::remove_all(at("scans"));
   fs::create_directory(at("scans"));
