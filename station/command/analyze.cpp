@@ -375,9 +375,9 @@ void add_analyze(CLI::App& app, Action& chosen) {
   const auto arguments = std::make_shared<AnalyzeArguments>();
   add_analyze_options(*verb, *arguments);
   verb->callback([&chosen, arguments] {
-    chosen =
-        with_safe_outputs(written_by(*arguments),
-                          [arguments](CommandContext& c) { return analyze(*arguments, c); }, {arguments->in});
+    chosen = with_safe_outputs(written_by(*arguments),
+                               [arguments](CommandContext& c) { return analyze(*arguments, c); },
+                               {arguments->in, corrections_of(*arguments).string()});
   });
 }
 

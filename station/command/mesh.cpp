@@ -210,6 +210,13 @@ Result<int> section(const MeshOptions& options, CommandContext& context) {
   return 0;
 }
 
+/// The file that the selection is in.
+std::string selections_of(const MeshOptions& options) {
+  return !options.selections.empty() ? options.selections
+         : options.in.empty()        ? std::string()
+                                     : selections_file_of(options.in).string();
+}
+
 /// What a selection of the viewer holds: a mesh, or a table of its wedges.
 Result<int> part(const MeshOptions& options, CommandContext& context) {
   std::vector<std::string> passed_over;
@@ -218,9 +225,7 @@ Result<int> part(const MeshOptions& options, CommandContext& context) {
   if (!mesh) {
     return std::unexpected(mesh.error());
   }
-  const std::filesystem::path kept =
-      options.selections.empty() ? selections_file_of(options.in) : std::filesystem::path(options.selections);
-  const Result<MeshSelection> selection = kept_selection(kept, *mesh, options.selection);
+  const Result<MeshSelection> selection = kept_selection(selections_of(options), *mesh, options.selection);
   if (!selection) {
     return std::unexpected(selection.error());
   }
@@ -312,7 +317,7 @@ void add_mesh(CLI::App& app, Action& chosen) {
   part_verb->fallthrough();
   part_verb->callback([&chosen, options] {
     chosen = with_safe_outputs({options->out}, [options](CommandContext& c) { return part(*options, c); },
-                               {options->in, options->wedges});
+                               {options->in, options->wedges, selections_of(*options)});
   });
   for (CLI::App* sub : {check_verb, convert_verb, section_verb, part_verb}) {
     sub->add_option("--unit", options->unit, "what the file's numbers are; default: its own word, else mm")

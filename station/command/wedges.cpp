@@ -278,7 +278,7 @@ void add_wedges(CLI::App& app, Action& chosen) {
     take_known_options(arguments->analyze,
                        [correct_verb](const char* name) { return correct_verb->count(name) > 0; });
     std::vector<std::string> written = written_by(arguments->analyze);
-    written.push_back(arguments->analyze.corrections);
+    written.push_back(corrections_of(arguments->analyze).string());
     chosen = with_safe_outputs(std::move(written),
                                [arguments](CommandContext& c) { return correct(*arguments, c); },
                                {arguments->analyze.in});

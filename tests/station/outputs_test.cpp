@@ -128,6 +128,31 @@ TEST_F(Outputs, ReplaceNeitherWhatIsReadNorEachOther) {
   }
 }
 
+TEST_F(Outputs, ReplaceNothingThatAPersonHasSaid) {
+  const fs::path own = beside("own.ply");
+  fs::copy_file(mesh(), own);
+  const std::string corrections = R"({"unit":"mm","mesh":"own.ply","corrections":[]})";
+  for (const char* name : {"said.json", "w.corrections.json", "own.selections.json"}) {
+    std::ofstream(beside(name)) << corrections;
+  }
+  const fs::path said = beside("said.json");
+  for (const Arguments& arguments :
+       {Arguments{"analyze", own, "-o", said, "--corrections", said},
+        {"analyze", own, "-o", beside("w.json"), "--invariants", beside("w.corrections.json")},
+        {"wedges", "correct", own, "-o", beside("w.json"), "--undo", "--invariants",
+         beside("w.corrections.json")},
+        {"mesh", "part", own, "--selection", "line 3", "--selections", said, "-o", said},
+        {"mesh", "part", own, "--selection", "line 3", "-o", beside("own.selections.json")}}) {
+    const Outcome outcome = run_command(arguments);
+    EXPECT_EQ(outcome.status, 2) << outcome.err;
+    EXPECT_THAT(outcome.complaints(), SizeIs(1)) << outcome.err;
+    EXPECT_THAT(outcome.err, HasSubstr("a name of its own"));
+    for (const char* name : {"said.json", "w.corrections.json", "own.selections.json"}) {
+      EXPECT_EQ(bytes_of(beside(name)), corrections) << name;
+    }
+  }
+}
+
 TEST_F(Outputs, ReplaceNoScanOfTheFolderThatIsRead) {
   const fs::path scans = beside("scans");
   ASSERT_EQ(
