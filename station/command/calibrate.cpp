@@ -2,9 +2,12 @@
 // Copyright The Dubsar developers
 // dubsar calibrate: camera, laser plane and stage from pictures of a board.
 
+#include <algorithm>
 #include <cstdio>
 #include <memory>
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "acquisition/board.h"
 #include "core/units.h"
@@ -133,6 +136,51 @@ Result<int> calibrate(Options options, CommandContext& context) {
   return outcome->report.missing.empty() ? 0 : 1;
 }
 
+/// The options that the job of the verb goes by: --print, --verify and --rig are one each.
+std::vector<std::string> heard_with(const std::string& job) {
+  if (job == "--print") {
+    return {"--print", "--board"};
+  }
+  if (job == "--verify") {
+    return {"--verify", "--calibration"};
+  }
+  if (job == "--rig") {
+    return {"--rig",   "--board",       "--serial",       "--temperature",    "--out",           "--motion",
+            "--stops", "--depth-range", "--plate-margin", "--board-exposure", "--laser-exposure"};
+  }
+  return {"--board", "--serial", "--temperature", "--out"};
+}
+
+/// What is said, and would pass unheard.
+std::optional<Error> unheard_option(const CLI::App& verb) {
+  const std::string job = [&verb]() -> std::string {
+    for (const char* one : {"--print", "--verify", "--rig"}) {
+      if (verb.count(one) > 0) {
+        return one;
+      }
+    }
+    return {};
+  }();
+  const std::vector<std::string> heard = heard_with(job);
+  for (const CLI::Option* option : verb.get_options()) {
+    if (option->count() == 0 || option->get_lnames().empty()) {
+      continue;
+    }
+    const std::string name = "--" + option->get_lnames().front();
+    if (std::ranges::find(heard, name) != heard.end()) {
+      continue;
+    }
+    if (job.empty()) {
+      return Error{ErrorKind::kUsage, name + " says nothing without --rig", "calibrate",
+                   "name the rig's file too, or leave it out"};
+    }
+    const bool logs = job == "--verify" && name == "--rig";
+    return Error{ErrorKind::kUsage, name + " says nothing with " + job, "calibrate",
+                 logs ? "name the rig's file with --calibration, beside which the log lies" : "leave it out"};
+  }
+  return std::nullopt;
+}
+
 }  // namespace
 
 void add_calibrate(CLI::App& app, Action& chosen) {
@@ -160,14 +208,17 @@ void add_calibrate(CLI::App& app, Action& chosen) {
   add_verify_options(*verb, options->verify);
   add_live_options(*verb, options->live);
   verb->fallthrough();
-  verb->callback([&chosen, options] {
+  verb->callback([&chosen, options, verb] {
     if (options->source.empty() && options->print.empty()) {
       throw CLI::RequiredError("source");
     }
-    chosen = with_safe_outputs({options->out, options->print},
-                               [options](CommandContext& c) { return calibrate(*options, c); },
-                               {options->source + "/calibration.toml", options->live.rig,
-                                options->verify.artefact, options->verify.calibration});
+    chosen =
+        with_safe_outputs({options->out, options->print},
+                          [options, unheard = unheard_option(*verb)](CommandContext& c) {
+                            return unheard ? Result<int>(std::unexpected(*unheard)) : calibrate(*options, c);
+                          },
+                          {options->source + "/calibration.toml", options->live.rig, options->verify.artefact,
+                           options->verify.calibration});
   });
 }
 

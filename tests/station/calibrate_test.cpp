@@ -166,6 +166,26 @@ TEST_F(Calibrate, ThePicturesOfOneCameraAreNoCalibrationOfAnother) {
   EXPECT_EQ(calibrate({"--serial", "SIM-CAMERA"}).status, 0);
 }
 
+TEST(CalibrateOptions, NothingThatIsSaidPassesUnheard) {
+  const test::TemporaryFolder folder;
+  const auto at = [&](const char* name) { return (folder.path() / name).string(); };
+  const std::vector<std::pair<Arguments, const char*>> said{
+      {{"calibrate", at("scan.ply"), "--verify", at("bar.toml"), "--rig", at("rig.toml")},
+       "--rig says nothing with --verify; name the rig's file with --calibration"},
+      {{"calibrate", at("scan.ply"), "--verify", at("bar.toml"), "-o", at("out.json")},
+       "--out says nothing with --verify; leave it out"},
+      {{"calibrate", "--board", "chessboard:9x6:25", "--print", at("b.png"), "--serial", "7"},
+       "--serial says nothing with --print; leave it out"},
+      {{"calibrate", at("pictures"), "--stops", "7"}, "--stops says nothing without --rig"}};
+  for (const auto& [words, answer] : said) {
+    const Outcome outcome = run_command(words);
+    EXPECT_EQ(outcome.status, 2) << outcome.err;
+    EXPECT_THAT(outcome.complaints(), SizeIs(1)) << outcome.err;
+    EXPECT_THAT(outcome.err, HasSubstr(answer));
+  }
+  EXPECT_TRUE(fs::is_empty(folder.path())) << "nothing was made";
+}
+
 /// A plate, measured some time or other.
 class VerifiedWhen : public ::testing::Test {
  protected:
