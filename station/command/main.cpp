@@ -67,6 +67,26 @@ Error told_in_full(Error error, const CLI::App& app) {
   return error;
 }
 
+/// The words as the parser takes them, the last first. Of "--name=" it would take the next word for the text,
+/// an option, too: there the text is empty.
+std::vector<std::string> reversed_words(int argc, char** argv) {
+  std::vector<std::string> words;
+  bool may_be_option = true;
+  for (int i = 1; i < argc; ++i) {
+    std::string word = argv[i];
+    may_be_option = may_be_option && word != "--";
+    if (may_be_option && word.size() > 3 && word.starts_with("--") && word.find('=') == word.size() - 1) {
+      word.pop_back();
+      words.push_back(std::move(word));
+      words.emplace_back();
+    } else {
+      words.push_back(std::move(word));
+    }
+  }
+  std::ranges::reverse(words);
+  return words;
+}
+
 int run(int argc, char** argv) {
   CLI::App app("Dubsar: the station beside a laser scanner for cuneiform tablets", "dubsar");
   app.set_version_flag("--version", DUBSAR_VERSION);
@@ -90,7 +110,7 @@ int run(int argc, char** argv) {
     add(app, action);
   }
   try {
-    app.parse(argc, argv);
+    app.parse(reversed_words(argc, argv));
   } catch (const CLI::Success& asked_for_help) {
     return app.exit(asked_for_help);
   } catch (const CLI::ParseError& bad) {

@@ -75,6 +75,8 @@ TEST_F(SessionWords, AnEmptyTextTakesAFieldOfTheTabletAway) {
   const nlohmann::json tablet = say("describe", {"--museum-number", "", "--json"}).json()["tablet"];
   EXPECT_EQ(tablet["museum_number"], "");
   EXPECT_EQ(tablet["collection"], "BM");
+  const nlohmann::json after = say("describe", {"--collection=", "--json"}).json()["tablet"];
+  EXPECT_EQ(after["collection"], "") << "not the word that comes next";
 }
 
 TEST_F(SessionWords, NamesAndReasonsHaveNoControlCharacters) {

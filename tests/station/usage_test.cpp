@@ -147,6 +147,8 @@ TEST(CommandUsage, AnEmptyTextIsNoNameAndNoPlace) {
       {{"export", "s", "--to", ""}, "--to: nothing is said"},
       {{"analyze", "m.ply", "-o", ""}, "--out: nothing is said"},
       {{"stitch", "s", "-o", ""}, "--out: nothing is said"},
+      {{"search", "s", "--like=", "--count", "3"}, "--like: nothing is said"},
+      {{"stitch", "s", "-o", "m.ply", "--poses="}, "--poses: nothing is said"},
       {{"verify", ""}, "path: nothing is said"},
       {{"mesh", "convert", "m.ply", ""}, "out: nothing is said"}};
   for (const auto& [words, answer] : said) {
