@@ -294,10 +294,12 @@ void add_session(CLI::App& app, Action& chosen) {
   });
   add("drop", "Take a scan out; nothing is deleted", true,
       [](const SessionOptions& o, CommandContext& c) {
-        return change(o, c, [&o](SessionStore& store) { return drop(store, o.id, o.why); });
+        return change(o, c,
+                      [&o](SessionStore& store) { return drop(store, o.id, std::string(trimmed(o.why))); });
       })
       ->add_option("--why", options->why, "the reason")
-      ->check(single_line());
+      ->check(single_line())
+      ->check(readable());
   add_describe(*verb, chosen);
   add_session_hints(*verb, chosen);
   add_session_mesh(*verb, chosen);

@@ -95,6 +95,12 @@ TEST_F(SessionWords, NamesAndReasonsHaveNoControlCharacters) {
   }
 }
 
+TEST_F(SessionWords, AReasonIsTextAndBlanksAreNone) {
+  expect_refused(say("drop", {"1", "--why", "d\xE4mmrig"}), "--why: has bytes that are no UTF-8");
+  ASSERT_EQ(say("drop", {"1", "--why", "  "}).status, 0);
+  EXPECT_EQ(note_of(1), "");
+}
+
 TEST_F(SessionWords, ASessionGoesByItsFoldersNameHoweverItIsPointedAt) {
   const auto sender = [&](const char* session, const char* package) {
     const Outcome made = run_command({"export", session, "--to", at(package).string(), "--without",
