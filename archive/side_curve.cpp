@@ -106,10 +106,11 @@ SideCurve::SideCurve(const std::vector<Eigen::Vector2f>& yz_mm) {
   }
   // With y to the right and z up, the way down the obverse (z > 0, y falling) and on round the bottom edge is
   // counter-clockwise, as the hull is.
-  double step = kStepMm;
-  ring = smoothed(resampled(ring, &step), step);
+  // Its points keep the steps of the outline: rounding draws a bend inwards, and by the length that is left
+  // a seal would be rolled out too short.
   step_mm_ = kStepMm;
-  ring = resampled(ring, &step_mm_);
+  const std::vector<Vector2d> outline = resampled(ring, &step_mm_);
+  ring = smoothed(outline, step_mm_);
   const auto normal = [&](std::size_t i) {
     const Vector2d along = ring[(i + 1) % ring.size()] - ring[(i + ring.size() - 1) % ring.size()];
     return Vector2d(along.y(), -along.x()).normalized();
@@ -176,13 +177,14 @@ SideCurve::Place SideCurve::place(const Vector2d& p) const {
   }
   // Between the two points about it, by how far along the tangent the point lies.
   const Vector2d tangent(-outward_[at].y(), outward_[at].x());
-  const double along = std::clamp((p - points_[at]).dot(tangent), -step_mm_, step_mm_);
+  const double along = (p - points_[at]).dot(tangent);
   const std::size_t other = along < 0 ? before(at) : next(at);
-  const double t = std::abs(along) / step_mm_;
+  const double apart = (points_[other] - points_[at]).norm();
+  const double t = apart > 0 ? std::min(std::abs(along) / apart, 1.0) : 0.0;
   Place place;
   place.outward = ((1 - t) * outward_[at] + t * outward_[other]).normalized();
   place.off_mm = (p - points_[at]).dot(outward_[at]);
-  place.along_mm = static_cast<double>(at) * step_mm_ + along;
+  place.along_mm = (static_cast<double>(at) + (along < 0 ? -t : t)) * step_mm_;
   const double length = length_mm();
   place.along_mm += place.along_mm < 0 ? length : 0.0;
   place.along_mm -= place.along_mm >= length ? length : 0.0;

@@ -10,7 +10,8 @@ namespace dubsar {
 
 /// The curve that a tablet is rolled along: the outline of its side, seen along the lines of writing, closed,
 /// convex and without corners. Coordinates are (y, z) of the tablet frame, mm. It begins between top edge and
-/// obverse and runs down the obverse, round the bottom edge, up the reverse and over the top edge.
+/// obverse and runs down the obverse, round the bottom edge, up the reverse and over the top edge. Lengths
+/// along it are those of the convex outline, from which the rounding took it inwards where that bends.
 class SideCurve {
  public:
   /// Round these points. Fewer than three, or all on a line: empty().
@@ -34,9 +35,9 @@ class SideCurve {
   [[nodiscard]] std::size_t next(std::size_t i) const { return i + 1 == points_.size() ? 0 : i + 1; }
   [[nodiscard]] std::size_t before(std::size_t i) const { return i == 0 ? points_.size() - 1 : i - 1; }
 
-  std::vector<Eigen::Vector2d> points_;  ///< evenly spaced
+  std::vector<Eigen::Vector2d> points_;  ///< one for each step along the outline
   std::vector<Eigen::Vector2d> outward_;
-  double step_mm_ = 0;
+  double step_mm_ = 0;  ///< of the outline
   /// The nearest point of the curve by cell of a coarse grid: where place() begins to look.
   std::vector<std::uint32_t> lookup_;
   Eigen::Vector2d low_mm_{0, 0};

@@ -80,6 +80,32 @@ TEST(Rollout, IsToScaleAlongTheCurve) {
   }
 }
 
+TEST(SideCurve, HasTheLengthsOfTheOutlineWhereThatIsRound) {
+  std::vector<Eigen::Vector2f> slab;  // 40 mm long, 10 mm thick, its ends half circles
+  for (int k = 0; k <= 180; ++k) {
+    const double a = std::numbers::pi * k / 180;
+    slab.push_back(Eigen::Vector2d(15 + 5 * std::sin(a), 5 * std::cos(a)).cast<float>());
+    slab.push_back(Eigen::Vector2d(-15 - 5 * std::sin(a), 5 * std::cos(a)).cast<float>());
+  }
+  const SideCurve curve(slab);
+  EXPECT_NEAR(curve.length_mm(), 60 + 10 * std::numbers::pi, 0.1);
+  const double round_mm = curve.place({-15, -5}).along_mm - curve.place({-15, 5}).along_mm;
+  EXPECT_NEAR(round_mm, 5 * std::numbers::pi, 0.1) << "14.7 along what the rounding leaves of it";
+  EXPECT_NEAR(curve.place({-10, 5}).along_mm - curve.place({10, 5}).along_mm, 20, 0.02);
+}
+
+TEST(Rollout, OfASealIsAsLongAsTheWayRoundIt) {
+  const double radius = 4;
+  const Mesh seal = tube(radius, 20, 360, 4);
+  const auto rollout = rolled_out(RenderScene(seal), {}, JobContext());
+  ASSERT_TRUE(rollout) << rollout.error().line();
+  float low = 0;
+  for (const Eigen::Vector3f& p : rollout->mesh.positions) {
+    low = std::min(low, p.y());
+  }
+  EXPECT_NEAR(-static_cast<double>(low), 2 * std::numbers::pi * radius, 0.1);
+}
+
 double area_mm2(const Mesh& flat) {
   double twice = 0;
   for (const auto& f : flat.faces) {
