@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <expected>
+#include <iterator>
 #include <set>
 #include <string>
 #include <unordered_map>
@@ -182,7 +183,11 @@ class Corrector {
     candidate.vertices.clear();
     candidate.faces.clear();
     company_.push_back(std::move(candidate));
-    std::vector<WedgeCandidate> judged = company_;
+    // Beside those of its own body, as what is found is.
+    std::vector<WedgeCandidate> judged;
+    std::ranges::copy_if(company_, std::back_inserter(judged), [&](const WedgeCandidate& one) {
+      return one.wedge.place.body == company_.back().wedge.place.body;
+    });
     judge_wedges(options_.judge, &judged);
     WedgeCandidate& c = company_.back();
     c.wedge.confidence = judged.back().wedge.confidence;  // whatever it is: a person says that it is one

@@ -151,6 +151,36 @@ TEST(WedgeCorrections, AMissedWedgeIsMeasuredAsItWouldHaveBeen) {
   EXPECT_GT(vertices_of(set, added.id).size(), 0.8 * before.vertex_count);
 }
 
+TEST(WedgeCorrections, AreJudgedBesideTheWedgesOfTheirOwnBody) {
+  const int id = lone_wedge();
+  ASSERT_GE(id, 0);
+  const std::vector<std::uint32_t> its = vertices_of(found().set, id);
+  SurfaceFields fields = found().fields;  // as if its clay were a body of its own
+  fields.further_surfaces = {fields.surface};
+  fields.body_of.assign(found().mesh.positions.size(), 0);
+  for (const std::uint32_t v : its) {
+    fields.body_of[v] = 1;
+  }
+  const Eigen::Vector3d place = wedge_of_id(found().set, id)->depth_point_mm;
+  WedgeFindings findings = found().findings;
+  for (WedgeCandidate& c : findings.candidates) {
+    c.wedge.place.body = c.wedge.depth_point_mm == place ? 2 : 1;
+  }
+  WedgeFindings alone = findings;
+  std::erase_if(alone.candidates, [](const WedgeCandidate& c) { return c.wedge.place.body == 1; });
+  ASSERT_EQ(alone.candidates.size(), 1U);
+  WedgeOptions options;
+  options.corrections = {delete_of({id}), add_at(its)};
+  const auto added = [&](const WedgeFindings& of) {
+    const WedgeSet set = settle_wedges(found().mesh, found().graph, fields, options, of);
+    EXPECT_THAT(set.lost, IsEmpty());
+    const auto at = std::ranges::find(set.wedges, ByHand::kAdded, &Wedge::by_hand);
+    return at == set.wedges.end() ? -1.0 : at->confidence;
+  };
+  EXPECT_GT(added(alone), 0);
+  EXPECT_EQ(added(findings), added(alone)) << "what lies on another body says nothing of it";
+}
+
 /// Deletes a wedge and adds it in two halves, cut by a plane through its depth point, the way that gives two
 /// wedges; nothing where no way does.
 std::vector<WedgeCorrection> in_halves(const Wedge& wedge) {
