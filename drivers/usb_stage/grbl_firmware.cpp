@@ -98,8 +98,13 @@ class Grbl : public Firmware {
 
   Status set_laser(int /*laser*/, double power) override {
     // In laser mode ($32=1) M3 alone stays dark until a G1; without axes that moves nothing.
-    return power > 0 ? command("G1F1M3S" + fixed_text(power * laser_scale_, 3), kAnswer)
-                     : command("M5", kAnswer);
+    if (power > 0) {
+      return command("G1F1M3S" + fixed_text(power * laser_scale_, 3), kAnswer);
+    }
+    const Status off = command("M5", kAnswer);
+    // One that is locked (in alarm) takes no M5. A reset puts the light off all the same, and it stands
+    // still.
+    return off || off.error().kind != ErrorKind::kUsage ? off : restart();
   }
 
   Status stop() override {

@@ -116,6 +116,25 @@ TEST(StageFirmware, GrblWithoutSwitchesMovesAgainWhenItIsOpenedAnew) {
   EXPECT_TRUE(controller->set_laser(0, 1));
 }
 
+/// In alarm it takes no M5: people were told to pull the plug of a laser that was off.
+TEST(StageFirmware, GrblThatIsLockedPutsItsLaserOff) {
+  Board board("grbl");
+  const auto controller = open(board, grbl);
+  ASSERT_TRUE(controller->home());
+  ASSERT_TRUE(controller->set_laser(0, 1));
+  ASSERT_TRUE(controller->move(0, -100, 5, true));
+  ASSERT_TRUE(controller->emergency_stop());
+  ASSERT_TRUE(controller->read()->position.alarm);
+  const Status off = controller->set_laser(0, 0);
+  EXPECT_TRUE(off) << off.error().line();
+  EXPECT_EQ(board.laser(), 0);
+  // That has not unlocked it.
+  EXPECT_TRUE(controller->read()->position.alarm);
+  ASSERT_TRUE(controller->home());
+  EXPECT_TRUE(controller->set_laser(0, 1));
+  EXPECT_EQ(board.laser(), 1);
+}
+
 /// With "S500,000" the controller knows no such command, and one that reads on lights its laser otherwise.
 TEST(StageFirmware, GrblDimsItsLaserWhateverTheHostsLocale) {
   const test::CommaLocale comma;
