@@ -159,7 +159,7 @@ const dubsar_driver& rig_driver() {
 }
 
 /// `endless`: a range camera goes on until it is told to stop, where its driver counts profiles and the URI
-/// says nothing of them.
+/// says nothing of them; and how far apart its rows lie it need not know, for the stage says where they are.
 Result<Device> part(const std::string& uri_text, const DriverRegistry& registry, bool endless) {
   Result<DeviceUri> uri = parse_device_uri(uri_text);
   if (!uri) {
@@ -172,10 +172,16 @@ Result<Device> part(const std::string& uri_text, const DriverRegistry& registry,
   const Result<std::vector<SettingInfo>> options =
       driver ? (*driver)->options() : std::unexpected(driver.error());
   if (endless && options) {
-    const auto rows = std::ranges::find(*options, "rows", &SettingInfo::key);
-    const bool said = std::ranges::any_of(uri->options, [](const auto& one) { return one.first == "rows"; });
-    if (rows != options->end() && rows->range && !said) {
+    const auto unsaid = [&](const std::string& key) -> const SettingInfo* {
+      const auto option = std::ranges::find(*options, key, &SettingInfo::key);
+      const bool said = std::ranges::any_of(uri->options, [&](const auto& one) { return one.first == key; });
+      return option != options->end() && !said ? &*option : nullptr;
+    };
+    if (const SettingInfo* const rows = unsaid("rows"); rows != nullptr && rows->range) {
       uri->options.emplace_back("rows", std::to_string(static_cast<std::int64_t>(rows->range->second)));
+    }
+    if (const SettingInfo* const row = unsaid("row"); row != nullptr && row->unit == "mm") {
+      uri->options.emplace_back("row", "1");
     }
   }
   return open_device(*uri, registry);

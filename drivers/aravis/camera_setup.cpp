@@ -162,6 +162,7 @@ Result<Scan3d> Camera::scan3d() {
     if (!read("Scan3dCoordinateScale", to.scale) || !read("Scan3dCoordinateOffset", to.offset)) {
       return std::unexpected(refused.told("the camera does not tell the scale of its coordinates", id_));
     }
+    to.told = has("Scan3dCoordinateScale");
     if (has("Scan3dInvalidDataFlag") &&
         arv_device_get_boolean_feature_value(device_, "Scan3dInvalidDataFlag", refused.fill()) && !refused &&
         has("Scan3dInvalidDataValue")) {

@@ -175,9 +175,11 @@ Status run_scan(Camera& camera, const dubsar_sink& sink, const std::atomic<bool>
     return started;
   }
   const Result<Scan3d> meaning = camera.scan3d();
-  if (!meaning) {
+  const Status placed = meaning ? check_places(*meaning, camera.options().row_mm, camera.id())
+                                : std::unexpected(meaning.error());
+  if (!placed) {
     [[maybe_unused]] const Status said = camera.stop();  // the camera knows
-    return std::unexpected(meaning.error());
+    return placed;
   }
   Scan scan(camera, sink, *meaning);
   Status status;

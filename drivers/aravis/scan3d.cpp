@@ -68,6 +68,18 @@ Status check(const Scan3d& meaning, const std::string& where) {
   return {};
 }
 
+Status check_places(const Scan3d& meaning, double row_mm, const std::string& where) {
+  if (!meaning.format.has[0] && !meaning.axes[0].told) {
+    return fail(ErrorKind::kUsage, "the camera does not tell how far apart the samples of a profile lie",
+                where, "ask for a Coord3D_AC format with format=");
+  }
+  if (!meaning.format.has[1] && !meaning.axes[1].told && row_mm == 0) {
+    return fail(ErrorKind::kUsage, "nobody says how far apart the rows lie", where,
+                "give row=, the motion from row to row in mm");
+  }
+  return {};
+}
+
 void read_row(const Scan3d& meaning, std::span<const std::uint8_t> frame, std::uint32_t row, double y_mm,
               ProfileRow& out) {
   const RangeFormat& format = meaning.format;

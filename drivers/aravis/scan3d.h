@@ -36,6 +36,7 @@ struct AxisScale {
   double scale = 1;
   double offset = 0;
   std::optional<double> invalid;  ///< the number that stands for "no return"
+  bool told = false;              ///< the scale is the camera's word
 };
 
 struct Scan3d {
@@ -49,6 +50,10 @@ struct Scan3d {
 
 /// kBadInput: scales, offsets or sizes that cannot be. where names the camera.
 Status check(const Scan3d& meaning, const std::string& where);
+
+/// kUsage: neither the data nor the camera's scales say how far apart columns or rows lie; of rows `row_mm`
+/// does as well, where it is not 0.
+Status check_places(const Scan3d& meaning, double row_mm, const std::string& where);
 
 /// One row of a frame as a profile in the scanner frame, mm.
 struct ProfileRow {

@@ -104,6 +104,26 @@ TEST(Scan3d, WhatCannotBeIsRefused) {
   }
 }
 
+/// Rows of a camera that knows no B came out a millimetre apart, whatever the stage did.
+TEST(Scan3d, RowsAndColumnsThatLieNobodyKnowsWhereAreRefused) {
+  Scan3d meaning = meaning_of("Coord3D_AC32f", 3, 2);
+  const Status rows = check_places(meaning, 0, "cam");
+  ASSERT_FALSE(rows);
+  EXPECT_EQ(rows.error().kind, ErrorKind::kUsage);
+  EXPECT_NE(rows.error().line().find("how far apart the rows lie; give row="), std::string::npos)
+      << rows.error().line();
+  EXPECT_TRUE(check_places(meaning, 0.05, "cam"));
+  meaning.axes[1].told = true;
+  EXPECT_TRUE(check_places(meaning, 0, "cam"));
+  meaning.format = *range_format(std::string("Coord3D_C16"));
+  const Status columns = check_places(meaning, 0, "cam");
+  ASSERT_FALSE(columns);
+  EXPECT_NE(columns.error().mend.find("Coord3D_AC"), std::string::npos) << columns.error().line();
+  meaning.axes[0].told = true;
+  EXPECT_TRUE(check_places(meaning, 0, "cam"));
+  EXPECT_TRUE(check_places(meaning_of("Coord3D_ABC32f", 3, 2), 0, "cam"));  // the data bring all along
+}
+
 TEST(AravisOptions, AreChecked) {
   const std::vector<dubsar_option> good{
       {"rows", "400"}, {"row", "0.05"}, {"count", "-0.001"}, {"resend", "0"}};
