@@ -78,15 +78,14 @@ void ask_for_tilts(const Intrinsics& intrinsics, std::vector<std::string>& out) 
 void ask_for_stripes(const std::vector<CalibrationView>& views, const Intrinsics& intrinsics,
                      const BoardSpec& board, double margin_mm, double depth_range_mm, const Plane& laser,
                      std::vector<std::string>& out) {
-  // Where the laser's plane holds the camera's y more than its x, the stripe runs down the picture.
-  const bool runs_down = std::abs(laser.normal.x()) > std::abs(laser.normal.y());
+  const bool down = runs_down(laser);
   std::vector<double> depths;
   double first = 1;
   double last = 0;
   for (const StripeSample& sample : stripe_samples(views, intrinsics, board, margin_mm)) {
     depths.push_back(sample.point_mm.z());
     const double along =
-        runs_down ? sample.pixel.y() / intrinsics.camera.height : sample.pixel.x() / intrinsics.camera.width;
+        down ? sample.pixel.y() / intrinsics.camera.height : sample.pixel.x() / intrinsics.camera.width;
     first = std::min(first, along);
     last = std::max(last, along);
   }
@@ -115,10 +114,10 @@ void ask_for_stripes(const std::vector<CalibrationView>& views, const Intrinsics
                   "the camera");
   }
   if (first > 0.25) {
-    out.emplace_back(runs_down ? kLaserUpper : kLaserLeft);
+    out.emplace_back(down ? kLaserUpper : kLaserLeft);
   }
   if (last < 0.75) {
-    out.emplace_back(runs_down ? kLaserLower : kLaserRight);
+    out.emplace_back(down ? kLaserLower : kLaserRight);
   }
 }
 

@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 
+#include "acquisition/calibration_volume.h"
 #include "acquisition/mirror_axis.h"
 #include "core/number_text.h"
 #include "core/units.h"
@@ -20,15 +21,19 @@ constexpr int kAtOnce = 12;      // poses: four at each of three positions
 constexpr int kEnoughEach = 12;  // more at one position tell little
 constexpr double kWholeWay = 0.85;
 
-/// Whether the stripe on a board in the middle part of the volume, held in the middle column, is in the
-/// picture.
+/// Whether the stripe on a board in the middle part of the volume, held in the middle column (of a stripe
+/// that runs down: row), is in the picture.
 bool is_seen(const RigCalibration& rig, double mirror) {
   const Plane plane = rig.motion.laser_at(rig.laser, mirror);
+  const bool down = runs_down(rig.laser);
+  // The mirror moves the stripe across itself.
+  const Eigen::Vector3d way = down ? Eigen::Vector3d::UnitX() : Eigen::Vector3d::UnitY();
+  const double margin_px = 0.05 * (down ? rig.camera.width : rig.camera.height);
   for (const double part : {-0.2, 0.0, 0.2}) {
-    const double z = rig.working_distance_mm + part * rig.depth_range_mm;
-    // Where the plane crosses that depth, on the side to side middle.
-    const auto t = plane.along({0, 0, z}, Eigen::Vector3d::UnitY());
-    if (t && rig.camera.sees(rig.camera.project({0, *t, z}), 0.05 * rig.camera.height)) {
+    const Eigen::Vector3d middle(0, 0, rig.working_distance_mm + part * rig.depth_range_mm);
+    // Where the plane crosses that depth.
+    const auto t = plane.along(middle, way);
+    if (t && rig.camera.sees(rig.camera.project(middle + *t * way), margin_px)) {
       return true;
     }
   }
@@ -52,7 +57,8 @@ double mirror_axis_doubt_rad(const RigCalibration& rig, double sigma_rad) {
 
 double mirror_axis_sigma_mm(const RigCalibration& rig, double doubt_rad) {
   const double way = std::max(reach(rig, 1), -reach(rig, -1));
-  const double half_field = 0.5 * rig.camera.width * rig.field_per_px_mm();
+  const double half_field =
+      0.5 * (runs_down(rig.laser) ? rig.camera.height : rig.camera.width) * rig.field_per_px_mm();
   return half_field * std::min(doubt_rad, rad_from_deg(90)) * (1 - std::cos(way));
 }
 

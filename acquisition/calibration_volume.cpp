@@ -94,7 +94,8 @@ double volume_sigma_mm(const CameraModel& camera, const Eigen::VectorXd& unknown
   const Eigen::Vector3d laser = unknowns.segment<3>(9);
   const RigCalibration rig = rig_of(camera, {laser.normalized(), 1 / laser.norm()});
   const RigidTransform camera_from_scanner = rig.scanner_from_camera().inverse();
-  const double half_field = 0.5 * camera.width * rig.field_per_px_mm();
+  const double half_field =
+      0.5 * (runs_down(rig.laser) ? camera.height : camera.width) * rig.field_per_px_mm();
   std::vector<Eigen::Vector2d> pixels;
   for (const double x : {-0.9, -0.45, 0.0, 0.45, 0.9}) {
     for (const double z : {-0.5, 0.5}) {

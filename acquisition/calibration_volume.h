@@ -3,12 +3,19 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cmath>
 #include <optional>
 
 #include "core/camera_model.h"
 #include "core/rig_calibration.h"
 
 namespace dubsar {
+
+/// Whether the stripe runs down the picture rather than across: the laser's plane (camera frame) then holds
+/// the camera's y more than its x.
+[[nodiscard]] inline bool runs_down(const Plane& laser) {
+  return std::abs(laser.normal.x()) > std::abs(laser.normal.y());
+}
 
 /// How far the picture holds the measuring volume's middle, from the origin along the scanner's z, mm:
 /// towards the camera and away from it, at most half of `depth_range_mm` each.

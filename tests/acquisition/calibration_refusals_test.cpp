@@ -5,8 +5,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "acquisition/calibration.h"
+#include "acquisition/mirror_axis.h"
+#include "core/units.h"
 #include "tests/acquisition/support/ideal_views.h"
 
 namespace dubsar {
@@ -150,6 +153,45 @@ TEST(Calibration, WhatIsOpenOfAMirrorsAxisCountsForItsPoints) {
   ASSERT_FALSE(refused.has_value());
   EXPECT_NE(refused.error().what.find("points would be known to"), std::string::npos);
   EXPECT_NE(refused.error().mend.find("let the mirror go from"), std::string::npos) << refused.error().mend;
+}
+
+/// Of a stripe that runs down the picture the field was taken to be as wide as the stripe is short.
+TEST(Calibration, AStripeThatRunsDownIsKnownNoBetter) {
+  std::vector<CalibrationView> views = held_views();
+  CalibrationOptions options = options_for(std::nullopt);
+  const Result<CalibrationReport> across = calibrate_rig(views, options);
+  ASSERT_TRUE(across.has_value()) << across.error().line();
+  for (CalibrationView& view : views) {  // the same with x and y exchanged
+    std::swap(view.board.width, view.board.height);
+    for (Eigen::Vector3d& corner : view.board.corners_mm) {
+      std::swap(corner.x(), corner.y());
+    }
+    for (std::vector<Eigen::Vector2d>* points : {&view.board.corners_px, &view.stripe_px}) {
+      for (Eigen::Vector2d& point : *points) {
+        std::swap(point.x(), point.y());
+      }
+    }
+  }
+  std::swap(options.board.cols, options.board.rows);
+  const Result<CalibrationReport> down = calibrate_rig(views, options);
+  ASSERT_TRUE(down.has_value()) << down.error().line();
+  EXPECT_NEAR(down->rig.quality.volume_sigma_um / across->rig.quality.volume_sigma_um, 1, 0.03);
+}
+
+/// Its mirror was said not to move the stripe at all, and what is open of its axis to harm nothing.
+TEST(Calibration, AMirrorWhoseStripeRunsDownIsDoubtedAsMuch) {
+  const RigCalibration across = truth_of(MotionKind::kGalvanometer);
+  RigCalibration down = across;
+  std::swap(down.camera.width, down.camera.height);
+  std::swap(down.camera.cx_px, down.camera.cy_px);
+  std::swap(down.camera.p1, down.camera.p2);
+  for (Eigen::Vector3d* v : {&down.laser.normal, &down.motion.direction, &down.motion.axis_point_mm}) {
+    std::swap(v->x(), v->y());
+  }
+  const double doubt_rad = rad_from_deg(5);
+  const double sigma_mm = mirror_axis_sigma_mm(across, doubt_rad);
+  EXPECT_GT(sigma_mm, 5e-4);
+  EXPECT_NEAR(mirror_axis_sigma_mm(down, doubt_rad), sigma_mm, 1e-6);
 }
 
 TEST(Calibration, RefusesAStageThatTheBoardDidNotFollow) {
