@@ -19,6 +19,9 @@ namespace {
 constexpr std::array<std::array<std::uint8_t, 3>, kSampleStateCount> kColours = {
     {{0, 0, 0}, {200, 186, 168}, {214, 30, 38}, {70, 140, 90}, {226, 160, 42}, {112, 72, 160}, {50, 50, 50}}};
 
+constexpr std::string_view kBegin =
+    "ply\nformat binary_little_endian 1.0\ncomment States of the samples of one scan, Dubsar\n";
+
 std::int16_t small(int value) {
   return static_cast<std::int16_t>(std::clamp<int>(value, -1, std::numeric_limits<std::int16_t>::max()));
 }
@@ -31,11 +34,9 @@ std::string encode_states_ply(int scan_id, const RangeGrid& grid, const RigidTra
   for (const SampleState state : states.state) {
     ++counts[static_cast<std::size_t>(state)];
   }
-  std::string out =
-      "ply\nformat binary_little_endian 1.0\ncomment States of the samples of one scan, Dubsar\n"
-      "obj_info unit mm\nobj_info scan " +
-      std::to_string(scan_id) + "\nobj_info num_cols " + std::to_string(grid.cols) + "\nobj_info num_rows " +
-      std::to_string(grid.rows) + "\n";
+  std::string out(kBegin);
+  out += "obj_info unit mm\nobj_info scan " + std::to_string(scan_id) + "\nobj_info num_cols " +
+         std::to_string(grid.cols) + "\nobj_info num_rows " + std::to_string(grid.rows) + "\n";
   if (!grid.source.empty()) {
     out += "obj_info file " + one_line(grid.source) + "\n";
   }
@@ -74,6 +75,10 @@ std::string encode_states_ply(int scan_id, const RangeGrid& grid, const RigidTra
 Status write_states_ply(const std::filesystem::path& path, int scan_id, const RangeGrid& grid,
                         const RigidTransform& model_from_scanner, const SampleStates& states) {
   return write_file_atomically(path, encode_states_ply(scan_id, grid, model_from_scanner, states));
+}
+
+bool is_states_ply(std::string_view head) {
+  return head.starts_with(kBegin);
 }
 
 }  // namespace dubsar

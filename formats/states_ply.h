@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <string>
+#include <string_view>
 
 #include "core/range_grid.h"
 #include "core/result.h"
@@ -18,5 +19,8 @@ namespace dubsar {
                                             const SampleStates& states);
 [[nodiscard]] Status write_states_ply(const std::filesystem::path& path, int scan_id, const RangeGrid& grid,
                                       const RigidTransform& model_from_scanner, const SampleStates& states);
+
+/// Whether a file that begins so is one of these.
+[[nodiscard]] bool is_states_ply(std::string_view head);
 
 }  // namespace dubsar

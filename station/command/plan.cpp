@@ -6,6 +6,9 @@
 #include <cstdio>
 #include <filesystem>
 #include <memory>
+#include <set>
+#include <string>
+#include <vector>
 
 #include "archive/report_pictures.h"
 #include "core/log.h"
@@ -152,16 +155,44 @@ Result<Comparison> keep_in_session(ScanSet& set, PlannedAgain& planned, Keeping 
   return followed ? std::move(comparison) : std::unexpected(followed.error());
 }
 
+/// Those of a scan that has no place any more must not go on showing one. Files of others stay.
+Status remove_states_of_before(const fs::path& folder, const std::set<std::string>& written) {
+  constexpr std::size_t kHeadBytes = 256;
+  std::vector<fs::path> before;
+  std::error_code error;
+  for (fs::directory_iterator it(folder, error), end; !error && it != end; it.increment(error)) {
+    const std::string name = it->path().filename().string();
+    if (!name.starts_with("states_") || !name.ends_with(".ply") || written.contains(name)) {
+      continue;
+    }
+    if (const Result<std::string> head = read_file_head(it->path(), kHeadBytes);
+        head && is_states_ply(*head)) {
+      before.push_back(it->path());
+    }
+  }
+  for (const fs::path& file : before) {
+    if (!fs::remove(file, error)) {
+      return fail(ErrorKind::kStorage, "states of before cannot be taken away", file.string(),
+                  "take the file away by hand: it shows a scan that has no place any more");
+    }
+    log_info(file.string() + ": states of a scan that has no place any more, taken away");
+  }
+  return {};
+}
+
 Status write_states(const fs::path& folder, const ScanSet& set, const PlannedAgain& planned) {
   if (Status made = make_folder(folder); !made) {
     return made;
   }
+  std::set<std::string> written_names;
   for (const PlacedScan& scan : planned.stage->placed()) {
     const auto states = planned.stage->states(scan.id);
     if (!states) {
       continue;
     }
-    const fs::path file = folder / fmt::format("states_{:03d}.ply", scan.id);
+    const std::string name = fmt::format("states_{:03d}.ply", scan.id);
+    const fs::path file = folder / name;
+    written_names.insert(name);
     if (const Status written = write_states_ply(file, scan.id, *scan.grid, scan.model_from_scanner, *states);
         !written) {
       return written;
@@ -170,7 +201,7 @@ Status write_states(const fs::path& folder, const ScanSet& set, const PlannedAga
   if (planned.stage->placed().size() + planned.stage->copies().size() < set.scans.size()) {
     log_warning("scans that are not registered have no states");
   }
-  return {};
+  return remove_states_of_before(folder, written_names);
 }
 
 Status write_page(const fs::path& file, const PlannedAgain& planned, const PageFacts& facts,

@@ -134,6 +134,19 @@ TEST_F(HalfScanned, PlanSaysTheSameAndWritesPageAndStates) {
   }
 }
 
+TEST_F(HalfScanned, StatesOfAScanThatWasTakenOutAreTakenAway) {
+  const fs::path states = folder_.path() / "states";
+  const auto plan = [&] { return run_command({"plan", session_, "--states", states.string()}); };
+  ASSERT_EQ(plan().status, 1);
+  ASSERT_TRUE(fs::exists(states / "states_002.ply"));
+  std::ofstream(states / "states_of_mine.ply") << "ply\n";
+  ASSERT_EQ(run_command({"session", "drop", session_, "2"}).status, 0);
+  EXPECT_EQ(plan().status, 1);
+  EXPECT_TRUE(fs::exists(states / "states_001.ply"));
+  EXPECT_FALSE(fs::exists(states / "states_002.ply"));
+  EXPECT_TRUE(fs::exists(states / "states_of_mine.ply"));
+}
+
 TEST_F(HalfScanned, PosesOfAFileJudgeAloneAndLeaveTheSessionsVerdict) {
   const std::string poses = (fs::path(session_) / "export" / "poses.json").string();
   nlohmann::json moved = nlohmann::json::parse(bytes_of(poses));
