@@ -2,12 +2,14 @@
 // Copyright The Dubsar developers
 // The dubsar command: a skin over the engine and the stages. Contract: design.md, "Command".
 
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <poll.h>
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cerrno>
 #include <csignal>
 #include <cstdio>
 #include <exception>
@@ -87,6 +89,16 @@ std::vector<std::string> reversed_words(int argc, char** argv) {
   return words;
 }
 
+/// In the place of a standard stream that is closed the next file or device that is opened would get what is
+/// said. Opened the wrong way round it fails as a closed one does: an answer that is lost is told.
+void hold_closed_streams() {
+  for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
+    if (::fcntl(stream, F_GETFD) < 0 && errno == EBADF) {
+      (void)::open("/dev/null", stream == STDIN_FILENO ? O_WRONLY : O_RDONLY);
+    }
+  }
+}
+
 int run(int argc, char** argv) {
   CLI::App app("Dubsar: the station beside a laser scanner for cuneiform tablets", "dubsar");
   app.set_version_flag("--version", DUBSAR_VERSION);
@@ -160,6 +172,7 @@ int run(int argc, char** argv) {
 // What is thrown before a verb runs comes of how the verbs are declared: to end there is right.
 // NOLINTNEXTLINE(bugprone-exception-escape)
 int main(int argc, char** argv) {
+  dubsar::hold_closed_streams();
   dubsar::map_large_blocks();
   return dubsar::run(argc, argv);
 }

@@ -10,6 +10,7 @@
 
 #include "build_paths.h"
 #include "tests/station/support/command.h"
+#include "tests/station/support/shell.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/support/wrong_spacing.h"
 
@@ -150,6 +151,12 @@ TEST_F(SessionWords, WhatTheReaderOfAScanRemarkedStaysWithTheSession) {
   for (const char* file : {"scans/scans.json", "report/report.html", "report/checklist.html"}) {
     EXPECT_THAT(bytes_of(at("package") / "data" / file), HasSubstr(said)) << file;
   }
+}
+
+/// The first file that is opened would have the number of the stream.
+TEST_F(SessionWords, NothingThatIsSaidGoesIntoAFileWhereAStreamIsClosed) {
+  test::shell("{ " DUBSAR_BINARY_DIR "/bin/dubsar plan " + test::quoted(at("BM 1")) + " 2>&-; }");
+  EXPECT_THAT(bytes_of(at("BM 1") / "session.lock"), Not(HasSubstr("%")));
 }
 
 }  // namespace
