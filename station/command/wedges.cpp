@@ -82,6 +82,24 @@ Status check_same_mesh(const AnalyzeArguments& a) {
       a.out, "name that mesh, or a file of this one's own, such as NAME.wedges.json");
 }
 
+/// What was said before is in the wedges, and would pass out of them.
+Status check_said_before(const AnalyzeArguments& a, const std::filesystem::path& where) {
+  std::error_code ignored;
+  if (std::filesystem::exists(where, ignored) || !std::filesystem::is_regular_file(a.out, ignored)) {
+    return {};
+  }
+  const Result<WedgeFile> file = read_wedges(a.out);
+  if (!file || file->corrections == 0) {
+    return {};
+  }
+  return fail(ErrorKind::kUsage,
+              fmt::format("these wedges were corrected before ({}), and {} is not there", file->corrections,
+                          where.filename().string()),
+              a.out,
+              "name the file that has these corrections with --corrections, or run `dubsar analyze` first, "
+              "which measures without them");
+}
+
 /// Nothing that is said may pass unheard.
 Status check_asked(const CorrectArguments& a) {
   const int asked = (a.remove.empty() ? 0 : 1) + (a.merge.empty() ? 0 : 1) + (a.split >= 0 ? 1 : 0) +
@@ -226,6 +244,9 @@ Result<int> correct(const CorrectArguments& arguments, CommandContext& context) 
   }
   if (const Status same_mesh = check_same_mesh(arguments.analyze); !same_mesh) {
     return std::unexpected(same_mesh.error());
+  }
+  if (const Status known = check_said_before(arguments.analyze, where); !known) {
+    return std::unexpected(known.error());
   }
   AnalyzeArguments analysis = arguments.analyze;
   analysis.known = said->corrections;

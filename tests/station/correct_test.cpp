@@ -229,6 +229,29 @@ TEST_F(Correct, WedgesOfAnotherMeshAreNotThisOnes) {
   EXPECT_EQ(read_wedges(in("n.json"))->corrections, 1U);
 }
 
+TEST_F(Correct, OnesThatLieElsewhereDoNotPassOutOfTheWedges) {
+  const CorrectionFile said{"tablet.ply",
+                            {{CorrectionKind::kDelete, {wedges().wedges[3].depth_point_mm}, {}, {}, 0}}};
+  ASSERT_TRUE(write_corrections(in("said.json"), said));
+  const std::string out = in("said_elsewhere.json");
+  ASSERT_EQ(run_command({"analyze", in("tablet.ply"), "-o", out, "--corrections", in("said.json")}).status,
+            0);
+  const std::string before = test::bytes_of(out);
+  const std::string id = std::to_string(read_wedges(out)->wedges[4].id);
+  for (const std::vector<std::string>& what : {std::vector<std::string>{"--delete", id}, {"--undo"}}) {
+    std::vector<std::string> words{"wedges", "correct", in("tablet.ply"), "-o", out};
+    words.insert(words.end(), what.begin(), what.end());
+    const Outcome refused = run_command(words);
+    EXPECT_EQ(refused.status, 2) << refused.err;
+    EXPECT_THAT(refused.err, HasSubstr("said_elsewhere.corrections.json is not there; name the file"));
+    EXPECT_EQ(test::bytes_of(out), before);
+  }
+  const Outcome named = run_command(
+      {"wedges", "correct", in("tablet.ply"), "-o", out, "--corrections", in("said.json"), "--delete", id});
+  EXPECT_EQ(named.status, 0) << named.err;
+  EXPECT_EQ(read_wedges(out)->corrections, 2U);
+}
+
 /// The workflows analyse a mesh that was stitched beside its session, with what was said in the session.
 TEST_F(Correct, OnesOfASessionAreNotOfAnotherMeshBesideIt) {
   const auto make_session = [](const std::string& name) {
