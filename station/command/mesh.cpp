@@ -2,8 +2,12 @@
 // Copyright The Dubsar developers
 // dubsar mesh check | convert | section | part.
 
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <cstdio>
 #include <filesystem>
+#include <limits>
 #include <memory>
 #include <string>
 #include <vector>
@@ -170,6 +174,26 @@ int nothing_cut(const MeshOptions& options, const CommandContext& context) {
   return 1;
 }
 
+/// Heights are over the line between the two places: off the surface it is a line of their own choice.
+void warn_of_place_off(const CrossSection& cut, const Eigen::Vector3d& place_mm, const char* option,
+                       const std::string& mesh) {
+  constexpr double kTypedMm = 0.1;  ///< so far a place may be rounded
+  double off_mm = std::numeric_limits<double>::infinity();
+  for (const auto& piece : cut.lines) {
+    for (const CrossSection::Point& point : piece) {
+      off_mm = std::min(off_mm, (point.place_mm - place_mm).norm());
+    }
+  }
+  if (off_mm > kTypedMm) {
+    log_warning(Error{ErrorKind::kUsage,
+                      fmt::format("the place of {} lies {:.2f} mm from the surface that is cut, and heights "
+                                  "are over the line through it",
+                                  option, off_mm),
+                      mesh, "say a place of the surface where heights are to be over it"}
+                    .line());
+  }
+}
+
 Result<int> section(const MeshOptions& options, CommandContext& context) {
   const Result<Eigen::Vector3d> from = place_of(options.from, "--from");
   const Result<Eigen::Vector3d> to = place_of(options.to, "--to");
@@ -195,6 +219,8 @@ Result<int> section(const MeshOptions& options, CommandContext& context) {
   if (const Status written = write_section(*cut, options.out, read_file_label(options.in)); !written) {
     return std::unexpected(written.error());
   }
+  warn_of_place_off(*cut, *from, "--from", options.in);
+  warn_of_place_off(*cut, *to, "--to", options.in);
   if (context.json) {
     CommandContext::print({{"file", options.out},
                            {"pieces", cut->lines.size()},

@@ -222,6 +222,15 @@ TEST_F(MeshCommand, APlyDoesNotSayMillimetresOfNumbersThatNobodyKnows) {
   EXPECT_THAT(bytes_of(at("tent.ply")), HasSubstr("obj_info unit mm")) << "its size is a tablet's";
 }
 
+TEST_F(MeshCommand, ACutFromPlacesOffTheSurfaceSaysSo) {
+  EXPECT_THAT(cut("tent.obj", "2,15,1.2", "28,15,1.2", "cut.csv").complaints(), SizeIs(0));
+  const Outcome off = cut("tent.obj", "2,15,3", "28,15,1.2", "cut.csv");
+  EXPECT_EQ(off.status, 0) << off.err;
+  EXPECT_THAT(
+      off.complaints(),
+      ElementsAre(HasSubstr("tent.obj: the place of --from lies 1.80 mm from the surface that is cut")));
+}
+
 TEST_F(MeshCommand, ACutThatMeetsNothingWritesNothing) {
   for (const char* file : {"cut.csv", "cut.svg"}) {
     const Outcome beside = cut("tent.obj", "200,0,0", "220,0,0", file);
