@@ -241,13 +241,21 @@ class Corrector {
       return std::unexpected(ids.error());
     }
     // As in a basin of several wedges: each is looked for in what those before it have left.
-    Vertices left = hollow_of(*ids);
+    const Vertices hollow = hollow_of(*ids);
+    Vertices left = hollow;
     std::vector<WedgeCandidate> made;
     for (std::size_t k = 0; k < correction.into_mm.size(); ++k) {
-      const auto deepest = std::ranges::find_if(left, [&](std::uint32_t v) {
+      const auto is_there = [&](std::uint32_t v) {
         return (mesh_.positions[v].cast<double>() - correction.into_mm[k]).norm() <= around_seed_mm_;
-      });
+      };
+      const auto deepest = std::ranges::find_if(left, is_there);
       if (deepest == left.end()) {
+        if (std::ranges::any_of(hollow, is_there)) {
+          return std::unexpected(
+              fmt::format("one of the places lies in the part of a place before it: number {}; say those "
+                          "first that cut into the others",
+                          k + 1));
+        }
         return std::unexpected(fmt::format("one of the places does not lie in the wedge: number {}", k + 1));
       }
       Vertices part = left;

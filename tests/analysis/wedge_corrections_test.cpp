@@ -10,6 +10,8 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <set>
+#include <string>
 
 #include "core/units.h"
 #include "sim/tablet.h"
@@ -17,6 +19,7 @@
 namespace dubsar {
 namespace {
 
+using ::testing::Contains;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
@@ -272,6 +275,22 @@ TEST(WedgeCorrections, AHollowOfTwoIsSplitAtTheirDeepestPlaces) {
     }
     EXPECT_LT(nearest, 0.1);
   }
+}
+
+TEST(WedgeCorrections, ASplitSaysOfAPlaceInThePartOfAnotherThatItLiesThere) {
+  std::set<std::string> reasons;
+  for (const Wedge& wedge : found().set.wedges) {
+    WedgeCorrection split = delete_of({wedge.id});
+    split.kind = CorrectionKind::kSplit;
+    split.into_mm = {wedge.depth_point_mm, wedge.depth_point_mm};
+    for (const LostCorrection& lost : corrected({split}).lost) {
+      reasons.insert(lost.reason);
+    }
+    if (reasons.size() > 2) {
+      break;
+    }
+  }
+  EXPECT_THAT(reasons, Contains(HasSubstr("lies in the part of a place before it: number 2")));
 }
 
 TEST(WedgeCorrections, WhatCannotBeMadeSaysWhyAndChangesNothing) {
