@@ -96,20 +96,20 @@ double mean_spacing_mm(const std::vector<float>& areas) {
   return std::sqrt(1.155 * mean_area_mm2(areas));
 }
 
+bool is_noisy(double noise_mm, const std::vector<float>& areas) {
+  return noise_mm > kNoisyShare * mean_spacing_mm(areas);
+}
+
 HollowMeasure::HollowMeasure(const Mesh& mesh, const VertexGraph& graph, const SurfaceFields& fields,
-                             const WedgeOptions& options, const std::vector<float>& areas, double noise_mm)
-    : mesh_(mesh),
-      fields_(fields),
-      options_(options),
-      areas_(areas),
-      source_{&graph,
-              mesh.faces,
-              areas,
-              mesh.positions,
-              fields.normal,
-              fields.reliability,
-              fields.height_mm,
-              noise_mm > kNoisyShare * mean_spacing_mm(areas)} {}
+                             const WedgeOptions& options, const std::vector<float>& areas, bool noisy)
+    : mesh_(mesh), fields_(fields), options_(options), areas_(areas), source_{&graph,
+                                                                              mesh.faces,
+                                                                              areas,
+                                                                              mesh.positions,
+                                                                              fields.normal,
+                                                                              fields.reliability,
+                                                                              fields.height_mm,
+                                                                              noisy} {}
 
 std::size_t HollowMeasure::least_vertices() const {
   return static_cast<std::size_t>(std::max(options_.judge.least_vertices, 1));

@@ -22,12 +22,15 @@ namespace dubsar {
 /// Edge of the equilateral triangle that the mean vertex stands for.
 [[nodiscard]] double mean_spacing_mm(const std::vector<float>& areas);
 
+/// Whether noise of the heights (analysis/height_noise.h) turns the normals of triangles of this size far.
+[[nodiscard]] bool is_noisy(double noise_mm, const std::vector<float>& areas);
+
 /// Measures hollows of one mesh. What it is made from must outlive it. Of any thread.
 class HollowMeasure {
  public:
-  /// `noise_mm`: of the heights (analysis/height_noise.h).
+  /// `noisy`: is_noisy() of the body that the hollows are in.
   HollowMeasure(const Mesh& mesh, const VertexGraph& graph, const SurfaceFields& fields,
-                const WedgeOptions& options, const std::vector<float>& areas, double noise_mm);
+                const WedgeOptions& options, const std::vector<float>& areas, bool noisy);
 
   /// The wedge of a hollow: faces, edges, measures. `vertices`: those of the hollow, the one nearest to the
   /// depth point first. What is wrong where there is none. `slot`: [V] scratch of the calling thread, all -1

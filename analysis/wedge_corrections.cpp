@@ -37,7 +37,9 @@ class Corrector {
         graph_(graph),
         fields_(fields),
         options_(options),
-        measure_(mesh, graph, fields, options, findings.area_mm2, findings.noise_mm),
+        findings_(findings),
+        measure_quiet_(mesh, graph, fields, options, findings.area_mm2, false),
+        measure_noisy_(mesh, graph, fields, options, findings.area_mm2, true),
         around_seed_mm_(std::max(kAroundSeedMm, kAroundSeedSpacings * mean_spacing_mm(findings.area_mm2))),
         slot_(mesh.positions.size(), -1),
         ids_(*ids),
@@ -143,10 +145,13 @@ class Corrector {
   }
 
   std::expected<WedgeCandidate, std::string> measure(const Vertices& vertices, ByHand by_hand) {
-    if (vertices.size() < measure_.least_vertices()) {
+    if (vertices.size() < measure_quiet_.least_vertices()) {
       return std::unexpected("too few vertices of the mesh");
     }
-    auto found = measure_.measure(vertices, &slot_);
+    // As the body was measured by itself, however rough another one is.
+    const std::size_t body = fields_.body_of.empty() ? 0 : fields_.body_of[vertices.front()];
+    const HollowMeasure& of_body = findings_.is_noisy[body] != 0 ? measure_noisy_ : measure_quiet_;
+    auto found = of_body.measure(vertices, &slot_);
     if (found && found->vertices.empty()) {
       return std::unexpected("nothing of the clay lies on its faces");
     }
@@ -300,7 +305,7 @@ class Corrector {
         region.push_back(v);
       }
     }
-    if (region.size() < measure_.least_vertices() && of_others > region.size()) {
+    if (region.size() < measure_quiet_.least_vertices() && of_others > region.size()) {
       return std::unexpected("other wedges lie there: delete or split them first");
     }
     sort_by_height(&region);
@@ -316,7 +321,9 @@ class Corrector {
   const VertexGraph& graph_;
   const SurfaceFields& fields_;
   const WedgeOptions& options_;
-  HollowMeasure measure_;
+  const WedgeFindings& findings_;
+  HollowMeasure measure_quiet_;
+  HollowMeasure measure_noisy_;
   double around_seed_mm_;
   std::vector<std::int32_t> slot_;
   std::vector<WedgeCandidate> company_;  ///< all that are judged together, without their vertices

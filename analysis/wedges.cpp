@@ -48,8 +48,10 @@ Result<WedgeFindings> candidates_of_body(const Mesh& mesh, const VertexGraph& gr
   job.progress("watershed", 0);
   WedgeFindings out;
   out.area_mm2 = vertex_areas(mesh, graph);
-  out.noise_mm = height_noise_mm(graph, fields.height_mm, fields.free_surface);
-  const int rounds = smoothing_rounds(out.noise_mm);
+  const double noise_mm = height_noise_mm(graph, fields.height_mm, fields.free_surface);
+  const bool noisy = is_noisy(noise_mm, out.area_mm2);
+  out.is_noisy = {static_cast<std::uint8_t>(noisy ? 1 : 0)};
+  const int rounds = smoothing_rounds(noise_mm);
   Basins basins =
       find_basins(graph, rounds > 0 ? smooth_heights(graph, fields.height_mm, rounds) : fields.height_mm,
                   fields.free_surface, basin_options(options, out.area_mm2));
@@ -59,7 +61,7 @@ Result<WedgeFindings> candidates_of_body(const Mesh& mesh, const VertexGraph& gr
   }
 
   job.progress("wedges", 0);
-  const HollowMeasure measure(mesh, graph, fields, options, out.area_mm2, out.noise_mm);
+  const HollowMeasure measure(mesh, graph, fields, options, out.area_mm2, noisy);
   std::vector<std::vector<WedgeCandidate>> found(basins.count());
   tbb::enumerable_thread_specific<std::vector<std::int32_t>> slots(
       [&] { return std::vector<std::int32_t>(mesh.positions.size(), -1); });
@@ -124,7 +126,7 @@ void join(const std::vector<std::uint32_t>& vertex, std::size_t body, WedgeFindi
     c.wedge.place.body = static_cast<int>(body) + 1;
     all->candidates.push_back(std::move(c));
   }
-  all->noise_mm = std::max(all->noise_mm, some.noise_mm);
+  all->is_noisy.push_back(some.is_noisy.front());
 }
 
 void sort_by_id(WedgeSet* set) {

@@ -46,7 +46,7 @@ struct WedgeFindings {
   std::vector<WedgeCandidate> candidates;  ///< judged
   std::vector<std::int32_t> basin_of;      ///< [V] see Basins::label
   std::vector<float> area_mm2;             ///< [V] of the surface that the vertex stands for
-  double noise_mm = 0;                     ///< of the heights; of the noisiest body
+  std::vector<std::uint8_t> is_noisy;      ///< of each body: is_noisy() (analysis/hollow_measure.h)
 };
 
 /// The wedges of a tablet.

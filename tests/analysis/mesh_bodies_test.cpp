@@ -132,6 +132,59 @@ TEST(MeshBodies, OfTwoTabletsInOneMeshAreThoseOfEachAloneAndNoLineRunsOverBoth) 
   }
 }
 
+/// Everything that corrections rest on.
+struct Analysed {
+  Mesh mesh;
+  VertexGraph graph;
+  SurfaceFields fields;
+  WedgeFindings findings;
+
+  explicit Analysed(Mesh what) : mesh(std::move(what)), graph(make_vertex_graph(mesh)) {
+    const JobContext job;
+    fields = compute_surface_fields(mesh, graph, {}, job).value();
+    findings = find_candidates(mesh, graph, fields, {}, job).value();
+  }
+  [[nodiscard]] WedgeSet corrected(const std::vector<WedgeCorrection>& said) const {
+    WedgeOptions options;
+    options.corrections = said;
+    return settle_wedges(mesh, graph, fields, options, findings);
+  }
+};
+
+TEST(MeshBodies, AWedgeThatAPersonAddsIsMeasuredByTheNoiseOfItsOwnBody) {
+  const Mesh one = tablet(12, {16, 14, 8}, 0.1, sim::DamageOptions::none());
+  Mesh rough = shifted(tablet(5, {12, 10, 7}, 0.1, sim::DamageOptions::none()), {30, 0, 0});
+  Random random(2);
+  for (Eigen::Vector3f& p : rough.positions) {
+    p += (0.02 * random.normal3()).cast<float>();
+  }
+  const Analysed alone(one);
+  const Analysed both(together(one, rough));
+  ASSERT_EQ(both.fields.body_count(), 2U);
+  std::size_t compared = 0;
+  for (const Wedge& wedge : alone.corrected({}).wedges) {
+    WedgeCorrection gone;
+    gone.at_mm = {wedge.depth_point_mm};
+    WedgeCorrection added;
+    added.kind = CorrectionKind::kAdd;
+    added.region_mm = gone.at_mm;
+    added.reach_mm = 1.0;
+    const WedgeSet right = alone.corrected({gone, added});
+    if (!right.lost.empty() || compared == 5) {
+      continue;
+    }
+    ++compared;
+    const WedgeSet set = both.corrected({gone, added});
+    const auto by_hand = [](const WedgeSet& of) {
+      return *std::ranges::find(of.wedges, ByHand::kAdded, &Wedge::by_hand);
+    };
+    ASSERT_TRUE(set.lost.empty()) << set.lost.front().reason;
+    EXPECT_LT((by_hand(set).depth_point_mm - by_hand(right).depth_point_mm).norm(), 1e-6) << wedge.id;
+    EXPECT_NEAR(by_hand(set).volume_mm3, by_hand(right).volume_mm3, 1e-6) << wedge.id;
+  }
+  EXPECT_GT(compared, 0U);
+}
+
 TEST(MeshBodies, AScrapAnywhereChangesNoMeasureByAMicrometre) {
   const Mesh mesh = tablet(12, {24, 20, 10}, 0.1, sim::DamageOptions::none());
   const std::vector<Wedge> alone = wedges_of(mesh);
