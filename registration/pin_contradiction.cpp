@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstddef>
 #include <map>
+#include <optional>
 
 #include "core/number_text.h"
 
@@ -18,6 +19,7 @@ struct Place {
   std::size_t scan = 0;
   Eigen::Vector3d at_mm{0, 0, 0};
   double variance_mm2 = 0;  ///< per axis, as measured
+  bool votes = true;        ///< false: the scan that this one is a part of shows the label, too
 };
 
 double off_mm(const Place& a, const Place& b) {
@@ -34,7 +36,9 @@ bool agree(const Place& a, const Place& b, const PinAdviceOptions& options) {
 /// The one that most others agree with; of equals the first.
 const Place& likeliest(const std::vector<Place>& places, const PinAdviceOptions& options) {
   return *std::ranges::max_element(places, {}, [&](const Place& place) {
-    return std::ranges::count_if(places, [&](const Place& other) { return agree(place, other, options); });
+    return std::ranges::count_if(places, [&](const Place& other) {
+      return place.votes && other.votes && agree(place, other, options);
+    });
   });
 }
 
@@ -52,13 +56,18 @@ std::vector<std::string> contradicted_labels(std::span<const ScanPinsInModel> sc
     for (const SeenPin& tip : scans[k].tips) {
       if (tip.label >= 0) {
         by_label[tip.label].push_back(
-            {k, scans[k].model_from_scanner * tip.position_mm, tip.covariance_mm2.trace() / 3.0});
+            {k, scans[k].model_from_scanner * tip.position_mm, tip.covariance_mm2.trace() / 3.0, true});
       }
     }
   }
   std::vector<std::string> said(scans.size());
   std::vector<double> farthest_mm(scans.size(), 0.0);
-  for (const auto& [label, places] : by_label) {
+  for (auto& [label, places] : by_label) {
+    for (Place& place : places) {
+      const std::optional<int> whole = scans[place.scan].part_of;
+      place.votes = !whole || std::ranges::none_of(
+                                  places, [&](const Place& other) { return scans[other.scan].id == *whole; });
+    }
     const Place& right = likeliest(places, options);
     for (const Place& place : places) {
       const double off = off_mm(place, right);

@@ -138,7 +138,7 @@ void ScanModel::warn_of_pins(const std::vector<int>& ids) {
   std::vector<ScanPinsInModel> pins;
   pins.reserve(ids.size());
   for (const int id : ids) {
-    pins.push_back({id, scans_.at(id).pins, scans_.at(id).group_from_scanner});
+    pins.push_back({id, scans_.at(id).pins, scans_.at(id).group_from_scanner, whole_among(ids, id)});
   }
   const std::vector<std::string> said = contradicted_labels(pins);
   for (std::size_t k = 0; k < ids.size(); ++k) {

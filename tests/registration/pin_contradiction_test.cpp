@@ -52,6 +52,19 @@ TEST(PinContradiction, OfScansTheOddOneOutIsNamed) {
                   ""));
 }
 
+TEST(PinContradiction, AScanAndAPartOfItAreOneWitness) {
+  std::vector<ScanPinsInModel> scans{pins_of(0), pins_of(1), pins_of(2), pins_of(4)};
+  swap_first_two(scans[0].tips);
+  swap_first_two(scans[1].tips);
+  scans[1].part_of = 0;
+  EXPECT_THAT(contradicted_labels(scans),
+              ElementsAre(HasSubstr("scan 2 shows it"), HasSubstr("scan 2 shows it"), "", ""));
+  // What the part alone shows it says.
+  scans[0].tips.clear();
+  scans[3].tips.clear();
+  EXPECT_THAT(contradicted_labels(scans), ElementsAre("", "", HasSubstr("scan 1 shows it"), ""));
+}
+
 TEST(PinContradiction, OfTwoScansTheLaterOneIsNamed) {
   std::vector<ScanPinsInModel> scans{pins_of(0), pins_of(4)};
   scans[0].tips[2].position_mm.z() += 3.0;
