@@ -6,6 +6,7 @@
 #include <Eigen/Geometry>
 #include <cmath>
 #include <map>
+#include <utility>
 
 namespace dubsar {
 
@@ -27,6 +28,10 @@ std::map<std::string, std::vector<Seen>> boards_on_stage(const std::vector<Calib
   }
   return out;
 }
+
+/// A mirror that comes back comes back to within this of where it was; and a position that was written in
+/// degrees is read a rounding beside itself. What a plane moves by on so little of the way is micrometres.
+constexpr double kSamePlaceRad = 1e-4;
 
 constexpr const char* kMend =
     "lay the board on the stage, take a picture, move the stage, and so on: five positions over its whole "
@@ -122,8 +127,16 @@ Result<MirrorFit> mirror_from_stripes(const std::vector<CalibrationView>& views,
   for (const StripeSample& sample : stripes) {
     at[views[intrinsics.used[sample.view]].mirror_position].push_back(sample.point_mm);
   }
+  std::vector<std::pair<double, std::vector<Eigen::Vector3d>>> stands;
+  for (auto& [position, points] : at) {
+    if (stands.empty() || position - stands.back().first > kSamePlaceRad) {
+      stands.emplace_back(position, std::move(points));
+    } else {
+      stands.back().second.insert(stands.back().second.end(), points.begin(), points.end());
+    }
+  }
   std::vector<std::pair<double, Plane>> planes;
-  for (const auto& [position, points] : at) {
+  for (const auto& [position, points] : stands) {
     Result<PlaneFit> fit = fit_plane(points);
     if (fit) {
       Plane plane = fit->plane;

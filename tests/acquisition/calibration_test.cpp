@@ -120,6 +120,18 @@ TEST(Calibration, FindsTheMirrorOfAGalvanometer) {
   EXPECT_GT(report->rig.motion.direction.dot(truth.motion.direction), std::cos(rad_from_deg(6)));
 }
 
+/// The poses of a folder that is gone on with stand a rounding beside those that are taken now.
+TEST(Calibration, AMirrorThatComesBackIsWhereItWas) {
+  const RigCalibration truth = truth_of(MotionKind::kGalvanometer);
+  std::vector<CalibrationView> views = held_views(truth, true);
+  for (std::size_t i = 0; i < views.size(); ++i) {
+    views[i].mirror_position += 1e-9 * static_cast<double>(i);
+  }
+  const Result<CalibrationReport> report = calibrate_rig(views, options_for(MotionKind::kGalvanometer));
+  ASSERT_TRUE(report.has_value()) << report.error().line();
+  EXPECT_LT(shape_error_mm(truth, report->rig, {-0.03, 0.0, 0.03}), 0.06);
+}
+
 TEST(Calibration, WhatIsSaidOfAMirrorsAxisBringsItNearer) {
   const RigCalibration truth = truth_of(MotionKind::kGalvanometer);
   constexpr std::uint64_t seed = 3;  // the worse of two that were tried
