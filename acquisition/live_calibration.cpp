@@ -99,6 +99,10 @@ Result<LiveCalibration> LiveCalibration::start(const LiveCalibrationPlan& given,
     if (!axis) {
       return std::unexpected(axis.error());
     }
+    if (!axis->endless) {  // the last row of a scan may round beyond its limit
+      plan.from = std::clamp(plan.from, axis->minimum, axis->maximum);
+      plan.to = std::clamp(plan.to, axis->minimum, axis->maximum);
+    }
     if (Status zero = check_zero(*axis, stage, *plan.set.motion, stage.uri()); !zero) {
       return std::unexpected(zero.error());
     }
@@ -200,7 +204,7 @@ Result<LiveCalibration::Taken> LiveCalibration::pose_while_streaming(const JobCo
   CalibrationView view;
   if (plan_.set.motion == MotionKind::kGalvanometer) {
     // A third of the poses each, so that the axis shows; where its own steps take it, as a scan says it.
-    const double mirror = plan_.from + 0.5 * (plan_.to - plan_.from) * static_cast<double>(number % 3);
+    const double mirror = std::lerp(plan_.from, plan_.to, 0.5 * static_cast<double>(number % 3));
     if (Status moved = stage_.move({static_cast<std::uint32_t>(plan_.axis), mirror, plan_.speed, false});
         !moved) {
       return std::unexpected(moved.error());
@@ -285,7 +289,8 @@ Result<LiveCalibration::Taken> LiveCalibration::stops_while_streaming(const JobC
   std::size_t free = plan_.set.stops.size();
   for (int i = 0; i < plan_.stops; ++i) {
     job.progress("stage", static_cast<double>(i) / plan_.stops);
-    const double there = plan_.from + (plan_.to - plan_.from) * i / std::max(1, plan_.stops - 1);
+    const double share = static_cast<double>(i) / std::max(1, plan_.stops - 1);
+    const double there = std::lerp(plan_.from, plan_.to, share);  // at the ends exactly there
     if (Status moved = stage_.move({axis, there, plan_.speed, false}); !moved) {
       return std::unexpected(moved.error());
     }

@@ -15,6 +15,7 @@ namespace {
 
 constexpr double kRunUpS = 0.3;     // to gather speed and for the readings around the first row
 constexpr double kRunUpSteps = 10;  // and at least so many rows
+constexpr double kRounding = 1e-6;  // of a step, as rig.toml counts its rows
 constexpr std::chrono::seconds kRest(1);
 constexpr std::chrono::seconds kGrace(2);  // to start and to brake
 
@@ -80,7 +81,8 @@ Result<StageAxis> axis_for_scan(const RigFile& file, Device& stage, MotionKind k
         "says that x turns");
   }
   const double end = end_of(file);
-  if (!axis.endless && (file.start < axis.minimum || end > axis.maximum)) {
+  const double rounding = kRounding * std::abs(file.step);
+  if (!axis.endless && (file.start < axis.minimum - rounding || end > axis.maximum + rounding)) {
     return fail(ErrorKind::kUsage,
                 "the scan from " + position_text(axis.rotary, file.start) + " to " +
                     position_text(axis.rotary, end) + " leaves the axis' limits, " +
@@ -93,6 +95,11 @@ Result<StageAxis> axis_for_scan(const RigFile& file, Device& stage, MotionKind k
 
 double end_of(const RigFile& file) {
   return file.start + file.step * (file.rows - 1);
+}
+
+double row_position(const RigFile& file, const StageAxis& axis, int row) {
+  const double there = file.start + file.step * row;
+  return axis.endless ? there : std::clamp(there, axis.minimum, axis.maximum);
 }
 
 Status check_turn(const RigFile& file, MotionKind kind, const std::string& where) {

@@ -51,6 +51,9 @@ Status put_camera_settings(const RigFile& file, Device& camera, const std::strin
 /// Where the scan's last row lies, mm or rad.
 [[nodiscard]] double end_of(const RigFile& file);
 
+/// Where the stage is sent for a row, mm or rad: a sum of steps may round beyond the limit that it ends at.
+[[nodiscard]] double row_position(const RigFile& file, const StageAxis& axis, int row);
+
 /// kUsage: a turntable that would turn too far in one scan. A grid has one view, that of the middle of its
 /// turn, by which its samples' normals, what hides what and what is red are told: from 60° on its ends would
 /// be judged as clay that was hardly seen, and beyond 90° as seen from behind.

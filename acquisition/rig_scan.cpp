@@ -114,6 +114,7 @@ Result<RigScanner> RigScanner::make(const RigFile& file, const RigCalibration& c
   }
   RigScanner out(file, *seen, std::move(camera), std::move(stage),
                  file.stripe_per_row ? StripeAxis::kPerRow : StripeAxis::kPerColumn);
+  out.axis_ = *axis;
   Rig& rig = out.rig_;
   rig.name = file.name;
   const bool turns_tablet = calibration.motion.kind == MotionKind::kTurntable;
@@ -161,7 +162,7 @@ Status RigScanner::check_frame(const Frame& frame) const {
 }
 
 Status RigScanner::row(int number, ProfileSink& sink, ScanTally& tally) {
-  const double position = file_.start + file_.step * number;
+  const double position = row_position(file_, axis_, number);
   const auto laser = static_cast<std::uint32_t>(file_.laser);
   if (Status moved = stage_.move({static_cast<std::uint32_t>(file_.axis), position, file_.speed, false});
       !moved) {

@@ -65,6 +65,7 @@ class RigScanner : public RigSource {
   [[nodiscard]] RowWindow::Give giving(ProfileSink& sink, ScanTally& tally) const;
 
   RigFile file_;
+  StageAxis axis_;
   Device camera_;
   Device stage_;
   std::unique_ptr<Triangulator> triangulator_;

@@ -211,6 +211,21 @@ TEST_F(RigScan, RefusesPartsThatDoNotFit) {
   EXPECT_NE(swapped.error().what.find("no camera"), std::string::npos);
 }
 
+/// Three steps of 0.1 mm are a rounding more than 0.3 mm.
+TEST_F(RigScan, GoesToTheVeryEndOfItsAxis) {
+  bench.limit = 0.3;
+  file.start = 0;
+  file.rows = 4;
+  file.ambient = false;
+  Result<RigScanner> made = make();
+  ASSERT_TRUE(made.has_value()) << made.error().line();
+  Collect sink;
+  const Status done = made->scan(sink);
+  ASSERT_TRUE(done.has_value()) << done.error().line();
+  EXPECT_EQ(sink.builder->grid().rows, 4);
+  EXPECT_EQ(bench.position, 0.3);
+}
+
 /// A scan copied from the file of another rig: 40 degrees would be 0.7 mm, 3 mm would be 172 degrees.
 TEST_F(RigScan, RefusesAScanInTheUnitOfAnotherKindOfStage) {
   file.turns = true;
