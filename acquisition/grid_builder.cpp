@@ -14,6 +14,9 @@ constexpr std::int64_t kLongestGap = 10000;
 /// Announced sizes and gaps are believed up to so many samples; beyond it memory is taken as rows come.
 constexpr std::size_t kMostSamples = std::size_t{1} << 27U;
 constexpr float kFarthestMm = 1e6F;
+/// A profile's time is of a clock that places it on a stage's way, and that began when the machine did: what
+/// lies before is no date.
+constexpr std::int64_t kYear2000Ns = 946'684'800'000'000'000;
 
 /// A channel appears with its first profile; rows before it hold `fill`.
 template <class T>
@@ -103,7 +106,7 @@ bool GridBuilder::append(const Profile& profile) {
   append_channel(grid_.rgb, profile.rgb, had, cols, 3, std::uint8_t{0});
   clamp_to_unit(grid_.intensity, std::min(had, grid_.intensity.size()), 0.0F);
   clamp_to_unit(grid_.confidence, std::min(had, grid_.confidence.size()), 0.0F);
-  if (grid_.timestamp_ns == 0) {
+  if (grid_.timestamp_ns == 0 && profile.timestamp_ns >= kYear2000Ns) {
     grid_.timestamp_ns = profile.timestamp_ns;
   }
   if (!spacing_known_ && grid_.rows >= next_estimate_) {

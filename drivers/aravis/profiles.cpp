@@ -2,6 +2,7 @@
 // Copyright The Dubsar developers
 #include "drivers/aravis/profiles.h"
 
+#include <chrono>
 #include <cmath>
 
 #include "drivers/plugin.h"
@@ -31,6 +32,10 @@ class Scan {
     info.view.direction[2] = -1;  // z points to the scanner
     info.view.motion_per_row_mm[1] = meaning_.format.has[1] ? 0 : row_mm_;
     info.device_id = device_.c_str();
+    // Its profiles are timed on a clock that began when this machine did.
+    info.timestamp_ns = std::chrono::duration_cast<std::chrono::nanoseconds>(
+                            std::chrono::system_clock::now().time_since_epoch())
+                            .count();
     return sink_.begin(sink_.user, &info) == 0;
   }
 

@@ -101,6 +101,23 @@ TEST(GridBuilder, AGapThatNoMemoryHoldsIsANumberGoneWrong) {
   EXPECT_EQ(builder.faults().rows_lost, 9000U);
 }
 
+/// A scan of an hour after the machine was switched on was dated one in the morning of 1970-01-01.
+TEST(GridBuilder, ATimeSinceTheMachineBeganIsNoDate) {
+  ScanInfo info;
+  info.cols = 2;
+  GridBuilder builder(info);
+  const std::vector<float> line{1, 2};
+  Profile profile;
+  profile.x = profile.y = profile.z = line;
+  profile.timestamp_ns = 3'600'000'000'000;
+  ASSERT_TRUE(builder.append(profile));
+  EXPECT_EQ(builder.grid().timestamp_ns, 0);
+  profile.row = 1;
+  profile.timestamp_ns = 1'735'689'600'000'000'000;
+  ASSERT_TRUE(builder.append(profile));
+  EXPECT_EQ(builder.grid().timestamp_ns, profile.timestamp_ns);
+}
+
 TEST_F(RangeSourceTest, AFailureInMidScanKeepsTheRowsAndTheNextScanRuns) {
   RangeSource source = open("odd:1?mode=fail");
   const auto failed = source.next({}, job_);

@@ -153,6 +153,7 @@ TEST_F(Aravis, AValueSetByHandEndsTheCamerasAutomatic) {
 }
 
 TEST_F(Aravis, ARangeCameraYieldsProfiles) {
+  constexpr std::int64_t kYear2025Ns = 1'735'689'600'000'000'000;
   Device device = open({{"rows", "200"}, {"row", "0.1"}}).value();
   const DeviceCapabilities can = device.capabilities().value();
   EXPECT_TRUE(can.yields_scans);
@@ -167,6 +168,7 @@ TEST_F(Aravis, ARangeCameraYieldsProfiles) {
     EXPECT_EQ(rows.info.expected_rows, 200);
     EXPECT_DOUBLE_EQ(rows.info.spacing_mm, 0.05);
     EXPECT_EQ(rows.info.device, "Dubsar Range 1 SN7");
+    EXPECT_GT(rows.info.timestamp_ns, kYear2025Ns);
     EXPECT_FLOAT_EQ(rows.x[100], 100 * 0.05F - 8);
     EXPECT_FLOAT_EQ(rows.y[100], 19.9F);
     EXPECT_FLOAT_EQ(rows.z[100], (1000 + 300 + 39) * 0.01F - 5);
