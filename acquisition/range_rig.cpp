@@ -59,7 +59,8 @@ Result<RangeRig> RangeRig::make(const RigFile& file, Device camera, Device stage
 
 Status RangeRig::scan(ProfileSink& sink) {
   stopped_->store(false);
-  if (Status homed = home_once(stage_, file_.axis); !homed) {
+  if (Status homed = home_once(stage_, file_.axis, [this] { return unless_stopped(*stopped_, file_); });
+      !homed) {
     return homed;
   }
   std::optional<LaserGuard> dark;  // goes last: a controller may take it for behind the move that still runs
@@ -75,7 +76,9 @@ Status RangeRig::run(ProfileSink& sink, std::optional<LaserGuard>& dark) {
   const PlacedProfiles::Scan scan{*file_.motion, file_.start, file_.step,
                                   file_.rows,    device_id_,  file_.speed};
   const Travel travel = travel_of(file_, axis_, file_.speed);
-  if (Status there = stage_.move({number, travel.from, file_.speed, false}); !there) {
+  Status there = unless_stopped(*stopped_, file_);
+  there = there ? stage_.move({number, travel.from, file_.speed, false}) : there;
+  if (!there) {
     return there;
   }
   const Result<StageReading> now = stage_.motion();
@@ -85,6 +88,9 @@ Status RangeRig::run(ProfileSink& sink, std::optional<LaserGuard>& dark) {
   if (Status reports = check_reports(*now, file_); !reports) {
     return reports;
   }
+  if (Status may = unless_stopped(*stopped_, file_); !may) {
+    return may;
+  }
   const auto laser = static_cast<std::size_t>(file_.laser);
   if (laser < now->laser.size()) {
     dark.emplace(stage_, static_cast<std::uint32_t>(laser));
@@ -92,7 +98,9 @@ Status RangeRig::run(ProfileSink& sink, std::optional<LaserGuard>& dark) {
       return lit;
     }
   }
-  if (Status off = stage_.move({number, travel.to, travel.speed, true}); !off) {
+  Status off = unless_stopped(*stopped_, file_);
+  off = off ? stage_.move({number, travel.to, travel.speed, true}) : off;
+  if (!off) {
     return off;
   }
   StageWatch watch(stage_, number, travel.time_of_way());

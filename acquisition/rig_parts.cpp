@@ -151,7 +151,11 @@ Result<double> position_of(const Device& stage, std::size_t axis) {
   return reading->position[axis];
 }
 
-Status home_once(Device& stage, int axis) {
+Status unless_stopped(const std::atomic<bool>& stopped, const RigFile& file) {
+  return stopped ? fail(ErrorKind::kCancelled, "scan stopped", file.name) : Status{};
+}
+
+Status home_once(Device& stage, int axis, const std::function<Status()>& go_on) {
   const Result<StageReading> now = stage.motion();
   if (!now) {
     return std::unexpected(now.error());
@@ -161,7 +165,11 @@ Status home_once(Device& stage, int axis) {
     return std::unexpected(axes.error());
   }
   const bool can_home = (*axes)[static_cast<std::size_t>(axis)].can_home;
-  return can_home && !now->homed ? stage.home() : Status{};
+  if (!can_home || now->homed) {
+    return {};
+  }
+  const Status may = go_on ? go_on() : Status{};  // a stage that had to be found again took its time
+  return may ? stage.home() : may;
 }
 
 Status check_reports(const StageReading& reading, const RigFile& file) {

@@ -2,8 +2,10 @@
 // Copyright The Dubsar developers
 #pragma once
 
+#include <atomic>
 #include <chrono>
 #include <cstdint>
+#include <functional>
 #include <string>
 
 #include "core/rig_calibration.h"
@@ -73,8 +75,13 @@ Status put_camera_settings(const RigFile& file, Device& camera, const std::strin
 /// Where an axis of the stage is, mm or rad.
 [[nodiscard]] Result<double> position_of(const Device& stage, std::size_t axis);
 
-/// Positions mean nothing before a stage has found its switch: homes it, if it can and has not.
-Status home_once(Device& stage, int axis);
+/// kCancelled where a stop was said: what a scan is about to move or to light stays as it is. A stop that
+/// comes before the motion ends none, and whoever said it believes that nothing moves any more.
+[[nodiscard]] Status unless_stopped(const std::atomic<bool>& stopped, const RigFile& file);
+
+/// Positions mean nothing before a stage has found its switch: homes it, if it can and has not. `go_on` is
+/// asked right before; nothing: it goes on.
+Status home_once(Device& stage, int axis, const std::function<Status()>& go_on = {});
 
 /// kUsage: a stage that does not tell where it is while it moves.
 Status check_reports(const StageReading& reading, const RigFile& file);

@@ -169,6 +169,9 @@ Status RigScanner::row(int number, ProfileSink& sink, ScanTally& tally) {
     return moved;
   }
   const auto take = [&](double power) -> Result<Frame> {
+    if (Status may = unless_stopped(*stopped_, file_); !may) {
+      return std::unexpected(may.error());
+    }
     if (Status lit = stage_.set_laser(laser, power); !lit) {
       return std::unexpected(lit.error());
     }
@@ -241,7 +244,8 @@ Status RigScanner::hand_on(SweptRow row, ProfileSink& sink, ScanTally& tally) {
 
 Status RigScanner::scan(ProfileSink& sink) {
   stopped_->store(false);
-  if (Status homed = home_once(stage_, file_.axis); !homed) {
+  if (Status homed = home_once(stage_, file_.axis, [this] { return unless_stopped(*stopped_, file_); });
+      !homed) {
     return homed;
   }
   LaserGuard dark(stage_, static_cast<std::uint32_t>(file_.laser));
@@ -263,8 +267,8 @@ Status RigScanner::scan(ProfileSink& sink) {
   pitch_.emplace(file_.step, plan->speed, triangulator_->calibration().motion.kind != MotionKind::kLinear);
   Status status = file_.continuous ? sweep(*plan, sink, tally) : begin(sink, tally);
   for (int number = 0; status && !file_.continuous && number < file_.rows; ++number) {
-    status =
-        stopped_->load() ? fail(ErrorKind::kCancelled, "scan stopped", file_.name) : row(number, sink, tally);
+    status = unless_stopped(*stopped_, file_);
+    status = status ? row(number, sink, tally) : status;
   }
   if (!status) {
     [[maybe_unused]] const Status said = stage_.stop();

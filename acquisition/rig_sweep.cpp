@@ -75,13 +75,14 @@ Result<Travel> RigScanner::plan_sweep() {
 
 Status RigScanner::sweep(const Travel& plan, ProfileSink& sink, ScanTally& tally) {
   const auto axis = static_cast<std::uint32_t>(file_.axis);
-  if (Status there = stage_.move({axis, plan.from, file_.speed, false}); !there) {
-    return there;
-  }
-  if (Status lit = stage_.set_laser(static_cast<std::uint32_t>(file_.laser), file_.laser_power); !lit) {
-    return lit;
-  }
-  if (Status off = stage_.move({axis, plan.to, plan.speed, true}); !off) {
+  const auto laser = static_cast<std::uint32_t>(file_.laser);
+  Status off = unless_stopped(*stopped_, file_);  // a camera may have taken seconds to start
+  off = off ? stage_.move({axis, plan.from, file_.speed, false}) : off;
+  off = off ? unless_stopped(*stopped_, file_) : off;
+  off = off ? stage_.set_laser(laser, file_.laser_power) : off;
+  off = off ? unless_stopped(*stopped_, file_) : off;
+  off = off ? stage_.move({axis, plan.to, plan.speed, true}) : off;
+  if (!off) {
     return off;
   }
   StageWatch watch(stage_, axis, plan.time_of_way());
@@ -91,8 +92,8 @@ Status RigScanner::sweep(const Travel& plan, ProfileSink& sink, ScanTally& tally
   std::uint64_t unsure = 0;  // since the last row whose place was known
   double position = plan.from;
   while (!rows.ends_within(0.5, position)) {
-    if (stopped_->load()) {
-      return fail(ErrorKind::kCancelled, "scan stopped", file_.name);
+    if (Status may = unless_stopped(*stopped_, file_); !may) {
+      return may;
     }
     Result<StreamedStripe> seen = stripes.next();
     if (!seen) {

@@ -30,6 +30,7 @@ struct RigBench {
   RigCalibration truth;
   const sim::Scene* scene = nullptr;
   std::function<GrayImage(const RigBench&)> look;  ///< in place of the scene
+  std::function<void()> when_started;              ///< the camera's stream was asked for
   sim::FrameOptions optics;
   std::string serial = "SIM-CAMERA";
   double position = 0;
@@ -144,7 +145,12 @@ inline const dubsar_driver& camera_driver() {
       bench_of(device).exposure_us = value->number;
       return DUBSAR_OK;
     };
-    out.start_frames = [](dubsar_device*, std::uint32_t, dubsar_error*) -> std::int32_t { return DUBSAR_OK; };
+    out.start_frames = [](dubsar_device* device, std::uint32_t, dubsar_error*) -> std::int32_t {
+      if (bench_of(device).when_started) {
+        bench_of(device).when_started();
+      }
+      return DUBSAR_OK;
+    };
     out.next_frame = [](dubsar_device* device, std::uint32_t, dubsar_frame* to,
                         dubsar_error* error) -> std::int32_t {
       RigBench& bench = bench_of(device);

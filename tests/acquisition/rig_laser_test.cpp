@@ -103,6 +103,22 @@ TEST_F(RigLaser, AnEmergencyStopIsTheStagesAndKeepsTheRows) {
   EXPECT_EQ(bench.laser, 0);
 }
 
+/// A camera may take seconds to start: whoever said stop meanwhile reaches in.
+TEST_F(RigLaser, AStopWhileTheCameraStartsLeavesStageAndLaserAsTheyAre) {
+  file.continuous = true;
+  file.ambient = false;
+  file.speed = 5;
+  Result<RigScanner> made = make();
+  ASSERT_TRUE(made.has_value()) << made.error().line();
+  bench.when_started = [&made] { EXPECT_TRUE(made->stop().has_value()); };
+  Collect sink;
+  const Status stopped = made->scan(sink);
+  ASSERT_FALSE(stopped.has_value());
+  EXPECT_EQ(stopped.error().kind, ErrorKind::kCancelled) << stopped.error().line();
+  EXPECT_EQ(bench.position, 0);
+  EXPECT_EQ(bench.asked.find('L'), std::string::npos) << bench.asked;
+}
+
 /// A range camera that is unplugged as soon as it is asked for profiles.
 Device gone_range_camera() {
   static const dubsar_driver driver = [] {
