@@ -26,6 +26,8 @@ struct FileLabel {
 
 /// How the text at the head of a mesh begins that Dubsar made.
 inline constexpr std::string_view kMeshOfDubsar = "Mesh of Dubsar";
+/// The origin of a mesh that is a picture of another: what it says of itself is what that says.
+inline constexpr std::string_view kColouredByDubsar = "Coloured by Dubsar";
 /// More of one value than this goes into no file.
 inline constexpr std::size_t kMaxLabelBytes = 2000;
 /// No line of a header is longer: there are readers that take 256 bytes at most.

@@ -21,6 +21,7 @@ constexpr std::size_t kHeadBytes = std::size_t{1} << 20U;
 constexpr const char* kSimulated = "SIMULATED";
 constexpr const char* kLabel = "Label";  ///< all that an STL has to say
 constexpr const char* kRights = "Rights";
+constexpr std::string_view kConverted = "Converted by Dubsar from ";
 constexpr std::array kNames = {"CDLI number", "Museum number", "Session",    kLabel,
                                kSimulated,    "Collection",    "Scanned by", kRights};
 /// By these a tablet is called; the others are said of it.
@@ -35,15 +36,17 @@ struct Said {
   Words words{};
 };
 
-/// The lines that label_lines() wrote with that prefix, behind the one that says whose file it is.
+/// The lines that label_lines() wrote with that prefix, behind the one that says whose file it is, or how
+/// Dubsar wrote it.
 Said said_in_lines(std::string_view head, std::string_view prefix) {
   Said said;
   TextScanner text(head);
+  bool begun = false;
   bool goes_on = false;  // the last line was a word's
   while (text.remaining() > 0) {
     std::string_view line = text.line();
     if (!line.starts_with(prefix)) {
-      if (said.ours) {
+      if (begun) {
         break;  // they stand together
       }
       if (line.starts_with("end_header") || line.starts_with("v ")) {
@@ -52,8 +55,9 @@ Said said_in_lines(std::string_view head, std::string_view prefix) {
       continue;
     }
     line.remove_prefix(prefix.size());
-    if (!said.ours) {
+    if (!begun) {
       said.ours = line.starts_with(kMeshOfDubsar) || line.starts_with("Range grid of Dubsar");
+      begun = said.ours || line.starts_with(kColouredByDubsar) || line.starts_with(kConverted);
       continue;
     }
     const std::size_t colon = line.find(": ");
@@ -165,7 +169,7 @@ FileLabel read_mesh_label(const std::filesystem::path& file) {
   Said said = head ? said_in(*head) : Said{};
   FileLabel label = label_of_words(std::move(said.words));
   if (!said.ours) {
-    label.origin = "Converted by Dubsar from " + file.filename().string();
+    label.origin = std::string(kConverted) + file.filename().string();
   }
   return label;
 }

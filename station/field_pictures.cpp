@@ -10,6 +10,7 @@
 #include "analysis/body_fields.h"
 #include "analysis/curvature.h"
 #include "analysis/field_colours.h"
+#include "archive/picture_words.h"
 #include "archive/png.h"
 #include "archive/six_views.h"
 #include "formats/atomic_file.h"
@@ -28,12 +29,13 @@ constexpr float kSurfaceCurvaturePerMm = 0.3F;
 
 /// NAME.ply and NAME.png
 Status write_coloured(const fs::path& folder, const std::string& name, const Mesh& coloured,
-                      const RigidTransform& tablet_from_model, const JobContext& job) {
-  if (const Status written = write_mesh(folder / (name + ".ply"), coloured, {.origin = kColoured});
+                      const RigidTransform& tablet_from_model, const FileLabel& label,
+                      const JobContext& job) {
+  if (const Status written = write_mesh(folder / (name + ".ply"), coloured, coloured_label(label));
       !written) {
     return written;
   }
-  return write_six_view_picture(folder / (name + ".png"), coloured, tablet_from_model, job);
+  return write_six_view_picture(folder / (name + ".png"), coloured, tablet_from_model, label, job);
 }
 
 /// [lines × per_vertex], of the vertex that each line is of.
@@ -60,8 +62,14 @@ void add_mesh(const Mesh& more, Mesh* mesh) {
 
 }  // namespace
 
+FileLabel coloured_label(const FileLabel& label) {
+  FileLabel out = label;
+  out.origin = kColouredByDubsar;
+  return out;
+}
+
 Status write_six_view_picture(const fs::path& png, const Mesh& mesh, const RigidTransform& tablet_from_model,
-                              const JobContext& job) {
+                              const FileLabel& label, const JobContext& job) {
   SixViewOptions options;
   options.render.style = mesh.colours.empty() ? RenderStyle::kClay : RenderStyle::kColours;
   options.render.longest_px = kLongestPx;
@@ -70,7 +78,7 @@ Status write_six_view_picture(const fs::path& png, const Mesh& mesh, const Rigid
   if (!sheet) {
     return std::unexpected(sheet.error());
   }
-  const auto bytes = encode_png(*sheet, png.stem().string());
+  const auto bytes = encode_png(*sheet, picture_words(label, png.stem().string()));
   if (!bytes) {
     return std::unexpected(bytes.error());
   }
@@ -78,7 +86,7 @@ Status write_six_view_picture(const fs::path& png, const Mesh& mesh, const Rigid
 }
 
 Status write_field_pictures(const fs::path& folder, const Mesh& mesh, const RigidTransform& tablet_from_model,
-                            const SurfaceFields& fields, const JobContext& job) {
+                            const SurfaceFields& fields, const FileLabel& label, const JobContext& job) {
   if (const Status made = make_folder(folder); !made) {
     return made;
   }
@@ -87,7 +95,7 @@ Status write_field_pictures(const fs::path& folder, const Mesh& mesh, const Rigi
   for (const SurfaceField field : kSurfaceFields) {
     coloured.colours = field_colours(fields, field);
     if (const Status written =
-            write_coloured(folder, std::string(field_name(field)), coloured, tablet_from_model, job);
+            write_coloured(folder, std::string(field_name(field)), coloured, tablet_from_model, label, job);
         !written) {
       return written;
     }
@@ -99,13 +107,13 @@ Status write_field_pictures(const fs::path& folder, const Mesh& mesh, const Rigi
   const VertexGraph graph = make_vertex_graph(surface);
   const Curvature curvature = vertex_curvature(surface, graph, make_vertex_geometry(surface, graph));
   surface.colours = diverging_colours(curvature.mean_per_mm, 0, kSurfaceCurvaturePerMm);
-  return write_coloured(folder, "surface", surface, tablet_from_model, job);
+  return write_coloured(folder, "surface", surface, tablet_from_model, label, job);
 }
 
 Status write_invariants(const fs::path& mat, const fs::path& picture_folder, const Mesh& mesh,
                         const RigidTransform& tablet_from_model, const SurfaceFields& fields,
                         const IntegralInvariantOptions& options, const std::vector<std::uint32_t>& vertex_of,
-                        const JobContext& job) {
+                        const FileLabel& label, const JobContext& job) {
   const IntegralInvariants invariants =
       invariants_of_bodies(mesh, fields.body_of, outlook_of(mesh, fields), fields.mean_edge_mm, options, job);
   if (job.cancelled()) {
@@ -123,6 +131,7 @@ Status write_invariants(const fs::path& mat, const fs::path& picture_folder, con
     comment += fmt::format("\nvertices: the {} of the mesh's file, which are {} places", vertex_of.size(),
                            mesh.positions.size());
   }
+  comment.append("\n").append(label_lines(label, ""));
   if (const Status written =
           write_feature_mat(mat, vertex_of.empty() ? invariants.value : lines, per_vertex, comment);
       !written || picture_folder.empty()) {
@@ -134,7 +143,7 @@ Status write_invariants(const fs::path& mat, const fs::path& picture_folder, con
   Mesh coloured = mesh;
   coloured.normals = fields.normal;
   coloured.colours = diverging_colours(strongest_response(invariants), 0, kStrongResponse);
-  return write_coloured(picture_folder, "invariants", coloured, tablet_from_model, job);
+  return write_coloured(picture_folder, "invariants", coloured, tablet_from_model, label, job);
 }
 
 }  // namespace dubsar

@@ -176,11 +176,13 @@ int run(const Options& options) {
     if (!options.pictures.empty()) {
       Mesh coloured = mesh;
       coloured.colours = diverging_colours(strongest_response(invariants), 0, 0.5F);
-      (void)write_six_view_picture(options.pictures + "_invariants.png", coloured, tablet_frame(mesh), job);
+      (void)write_six_view_picture(options.pictures + "_invariants.png", coloured, tablet_frame(mesh), {},
+                                   job);
     }
   }
   if (!options.pictures.empty()) {
-    if (const Status drawn = write_field_pictures(options.pictures, mesh, tablet_frame(mesh), *fields, job);
+    if (const Status drawn =
+            write_field_pictures(options.pictures, mesh, tablet_frame(mesh), *fields, {}, job);
         !drawn) {
       std::fprintf(stderr, "%s\n", drawn.error().line().c_str());
       return 2;

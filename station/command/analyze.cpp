@@ -56,28 +56,28 @@ nlohmann::ordered_json summary_json(const AnalyzeArguments& arguments, const Wed
 
 /// The surface fields, and the wedges in colours, each as PLY and as PNG of six views.
 Status draw_pictures(const std::filesystem::path& folder, const Mesh& mesh, const Analysis& analysis,
-                     const JobContext& job) {
+                     const FileLabel& label, const JobContext& job) {
   const RigidTransform& lies = analysis.text.text_from_model;
-  if (Status drawn = write_field_pictures(folder, mesh, lies, analysis.fields, job); !drawn) {
+  if (Status drawn = write_field_pictures(folder, mesh, lies, analysis.fields, label, job); !drawn) {
     return drawn;
   }
   const Mesh coloured = annotated_mesh(mesh, analysis);
-  if (Status written = write_mesh(folder / "wedges.ply", coloured, {.origin = kColoured}); !written) {
+  if (Status written = write_mesh(folder / "wedges.ply", coloured, coloured_label(label)); !written) {
     return written;
   }
-  return write_six_view_picture(folder / "wedges.png", coloured, lies, job);
+  return write_six_view_picture(folder / "wedges.png", coloured, lies, label, job);
 }
 
 Status write_extras(const AnalyzeArguments& arguments, const Mesh& mesh, const Analysis& analysis,
-                    const std::vector<std::uint32_t>& lines, const JobContext& job) {
+                    const std::vector<std::uint32_t>& lines, const FileLabel& label, const JobContext& job) {
   if (!arguments.pictures.empty()) {
-    if (const Status written = draw_pictures(arguments.pictures, mesh, analysis, job); !written) {
+    if (const Status written = draw_pictures(arguments.pictures, mesh, analysis, label, job); !written) {
       return written;
     }
   }
   if (!arguments.invariants.empty()) {
     return write_invariants(arguments.invariants, arguments.pictures, mesh, analysis.text.text_from_model,
-                            analysis.fields, {.radius_mm = arguments.radius_mm}, lines, job);
+                            analysis.fields, {.radius_mm = arguments.radius_mm}, lines, label, job);
   }
   return {};
 }
@@ -215,7 +215,8 @@ Status write_outputs(const AnalyzeArguments& arguments, const WedgeFile& file, c
     }
     drawings = std::move(*drawn);
   }
-  if (Status written = write_extras(arguments, mesh, analysis, lines_of_mat(arguments, read), job);
+  if (Status written =
+          write_extras(arguments, mesh, analysis, lines_of_mat(arguments, read), file.label, job);
       !written) {
     return written;
   }

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "formats/atomic_file.h"
+#include "formats/file_label_reader.h"
 #include "formats/mesh_io.h"
 #include "tests/analysis/support/shapes.h"
 #include "tests/station/support/command.h"
@@ -95,6 +96,32 @@ TEST_F(AnalyzeFields, PicturesAndInvariantsAreWritten) {
   const auto mat = read_whole_file(at("ball.mat"));
   ASSERT_TRUE(mat);
   EXPECT_EQ(std::count(mat->begin(), mat->end(), '\n'), 2 + 1026);
+}
+
+TEST_F(AnalyzeFields, PicturesAndInvariantsSayWhatTheyAreOf) {
+  const FileLabel label = label_of_words(
+      {{"SIMULATED", "No such tablet."}, {"Museum number", "BM 12345"}, {"Rights", "A Museum; CC BY 4.0"}});
+  ASSERT_TRUE(write_mesh(at("ball.ply"), shapes::sphere(20, 4), label));
+  const Outcome outcome =
+      run_command({"analyze", at("ball.ply").string(), "-o", at("w.json").string(), "--pictures",
+                   at("fields").string(), "--invariants", at("ball.mat").string()});
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  for (const char* name : {"height", "surface", "invariants", "wedges"}) {
+    const fs::path stem = at("fields") / name;
+    const FileLabel of_mesh = read_file_label(stem.string() + ".ply");
+    EXPECT_TRUE(of_mesh.simulated) << name;
+    EXPECT_EQ(of_mesh.words, label.words) << name;
+    EXPECT_EQ(read_mesh_label(stem.string() + ".ply").origin.find("Converted by Dubsar from "), 0U) << name;
+    const auto png = read_whole_file(stem.string() + ".png");
+    ASSERT_TRUE(png) << name;
+    EXPECT_THAT(*png, HasSubstr("SIMULATED: No such tablet.\nMuseum number: BM 12345\n")) << name;
+  }
+  const auto mat = read_whole_file(at("ball.mat"));
+  ASSERT_TRUE(mat);
+  EXPECT_THAT(*mat, HasSubstr("\n# SIMULATED: No such tablet.\n# Museum number: BM 12345\n"));
+  const fs::path obj = at("height.obj");
+  ASSERT_EQ(run_command({"mesh", "convert", (at("fields") / "height.ply").string(), obj.string()}).status, 0);
+  EXPECT_EQ(read_file_label(obj).words, label.words) << "and what is made of them";
 }
 
 /// The values of each line, as text; the lines are numbered in their order.
