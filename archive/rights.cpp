@@ -32,6 +32,17 @@ std::string iiif_rights(std::string_view rights) {
   if (address.starts_with(kPage)) {
     address.replace(0, kPage.size(), kStatement);
   }
+  // Browsers show the page that tells people of a licence: its own address is the folder of that.
+  const std::size_t page = address.rfind('/') + 1;
+  for (const std::string_view told_by : {"deed", "legalcode"}) {
+    const std::string_view last = std::string_view(address).substr(page);
+    if (last == told_by || (last.starts_with(told_by) && last[told_by.size()] == '.')) {
+      address.resize(page);
+    }
+  }
+  if (!address.ends_with('/')) {
+    address += '/';
+  }
   const bool known = std::ranges::any_of(
       std::array<std::string_view, 3>{"http://creativecommons.org/licenses/",
                                       "http://creativecommons.org/publicdomain/", kStatement},
