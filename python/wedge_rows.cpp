@@ -16,6 +16,7 @@ namespace {
 
 struct WedgeRow {
   std::int32_t id;
+  std::int32_t body;
   double depth_point_mm[3];
   double exit_points_mm[3][3];
   double exit_points_surface_mm[3][3];
@@ -77,6 +78,7 @@ void put(char (&to)[N], std::string_view from) {
 WedgeRow row_of(const Wedge& wedge) {
   WedgeRow row{};
   row.id = wedge.id;
+  row.body = wedge.place.body;
   put(row.depth_point_mm, wedge.depth_point_mm);
   put(row.exit_points_mm, wedge.exit_points_mm);
   put(row.exit_points_surface_mm, wedge.exit_points_surface_mm);
@@ -130,7 +132,7 @@ py::array wedge_rows(const std::vector<Wedge>& wedges) {
 }
 
 void bind_wedge_rows() {
-  PYBIND11_NUMPY_DTYPE(WedgeRow, id, depth_point_mm, exit_points_mm, exit_points_surface_mm,
+  PYBIND11_NUMPY_DTYPE(WedgeRow, id, body, depth_point_mm, exit_points_mm, exit_points_surface_mm,
                        exit_points_extent_mm, outer_vertices_mm, face_normals, surface_normal,
                        directional_edge, directional_by, directional_margin, depth_mm, face_angles_rad,
                        opening_angles_rad, edge_lengths_mm, edge_slopes_rad, face_slopes_rad, edge_bows_mm,

@@ -149,8 +149,9 @@ class _Rejected(TypedDict):
 class Wedges:
     @property
     def table(self) -> NDArray[np.void]:
-        """One row a wedge. Columns: id, depth_point_mm[3], exit_points_mm[3, 3], exit_points_surface_mm[3, 3],
-        exit_points_extent_mm[3, 3], outer_vertices_mm[3, 3], face_normals[3, 3], surface_normal[3],
+        """One row a wedge. Columns: id, body (of a mesh that holds several: from 1 by falling area; else 0),
+        depth_point_mm[3], exit_points_mm[3, 3], exit_points_surface_mm[3, 3], exit_points_extent_mm[3, 3],
+        outer_vertices_mm[3, 3], face_normals[3, 3], surface_normal[3],
         directional_edge, directional_by (bytes, b"longest"), directional_margin, depth_mm, face_angles_rad[3],
         opening_angles_rad[3], edge_lengths_mm[3], edge_slopes_rad[3], face_slopes_rad[3], edge_bows_mm[3],
         volume_mm3, sigma_depth_point_mm, sigma_depth_mm, sigma_edge_rad[3] (direction),

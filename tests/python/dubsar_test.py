@@ -637,6 +637,13 @@ class Pipeline(Scans):
             with open(path, "w") as corrected:
                 json.dump(stored, corrected)
             self.assertEqual(dubsar.read_wedges(path).table["by_hand"][3], b"merged")
+            self.assertTrue((back.table["body"] == 0).all())
+            stored["wedges"][3]["place"]["body"] = 2
+            with open(path, "w") as of_two:
+                json.dump(stored, of_two)
+            with self.assertWarnsRegex(dubsar.MeshWarning, r"place\.body tells them apart"):
+                bodies = dubsar.read_wedges(path).table["body"]
+            self.assertEqual((bodies[2], bodies[3], bodies[4]), (0, 2, 0))
             np.testing.assert_allclose(back.table["depth_mm"], table["depth_mm"], atol=1e-5)
             self.assertEqual(back.fields, {})
             with self.assertRaises(dubsar.UsageError):
