@@ -61,6 +61,8 @@ class RangeSource {
   /// is in partial(), and the answer, now and to all that is asked later, is the error of halted(): which of
   /// the two it is the device has said.
   void halt() const { *halted_ = true; }
+  /// Whether it was pressed, for what else uses the device() meanwhile; lives as long as this.
+  [[nodiscard]] const std::atomic<bool>* halt_flag() const { return halted_.get(); }
   [[nodiscard]] std::optional<Error> halted() const;
 
   /// Runs the next scan. Nothing: the source is exhausted. On an error (kDevice, kBadInput, kCancelled when

@@ -24,11 +24,15 @@ constexpr int kRestsAfterFailure = 40;
 
 Status CameraStream::show() {
   if (!runs_) {
+    const bool is_rig = device_.uri().starts_with("rig:");
+    if (is_rig && halted_ != nullptr && !halting_) {
+      halting_ = std::make_unique<StopsWhenCancelled>(device_, no_job_, halted_);
+    }
     if (const Status started = device_.start_frames(); !started) {
       return started;
     }
     runs_ = true;
-    lit_ = device_.uri().starts_with("rig:") ? std::optional(true) : std::nullopt;
+    lit_ = is_rig ? std::optional(true) : std::nullopt;
     const Result<DeviceCapabilities> capable = device_.capabilities();
     serial_ = capable ? capable->serial : std::string();
   }
@@ -65,7 +69,10 @@ CameraStream::~CameraStream() {
 }
 
 Status CameraStream::end() {
-  return std::exchange(runs_, false) ? device_.stop_frames() : Status{};
+  const Status ended = std::exchange(runs_, false) ? device_.stop_frames() : Status{};
+  const std::optional<Error> burns = halting_ ? halting_->refused() : std::nullopt;
+  halting_.reset();
+  return burns ? std::unexpected(*burns) : ended;
 }
 
 Status CameraStream::put(const SettingWords& words, const std::string& where) {
@@ -136,7 +143,8 @@ void CameraWatch::watch(Device& device) {
     return;
   }
   sink_(DeviceTells{std::make_shared<const DevicePanel>(*panel)});
-  CameraStream stream(device, sink_, [this] { return stopped_.load(); });
+  CameraStream stream(
+      device, sink_, [this] { return stopped_.load(); }, &halted_);
   while (!stopped_) {
     std::deque<ChangeSetting> wanted;
     {

@@ -5,11 +5,14 @@
 #include <atomic>
 #include <deque>
 #include <functional>
+#include <memory>
 #include <mutex>
 #include <optional>
 #include <string>
 #include <thread>
 
+#include "acquisition/stops_when_cancelled.h"
+#include "core/job.h"
 #include "station/device_panel.h"
 #include "station/event.h"
 #include "station/operator_command.h"
@@ -35,6 +38,11 @@ class CameraWatch {
   /// Of a rig: whether its laser is on, as it is unless said; CameraView::lit says from when on.
   void light(bool on) { lit_ = on; }
   void stop() { stopped_ = true; }  ///< returns at once; `ended` follows
+  /// The emergency stop: likewise, and a rig's laser goes off wherever its camera is.
+  void halt() {
+    halted_ = true;
+    stop();
+  }
   [[nodiscard]] bool ended() const { return ended_; }
 
  private:
@@ -47,6 +55,7 @@ class CameraWatch {
   std::deque<ChangeSetting> wanted_;
   bool looks_ = true;  ///< and takes what is wanted
   std::atomic<bool> lit_ = true;
+  std::atomic<bool> halted_ = false;
   std::atomic<bool> stopped_ = false;
   std::atomic<bool> ended_ = false;
   std::thread thread_;
@@ -56,9 +65,12 @@ class CameraWatch {
 /// with that.
 class CameraStream {
  public:
-  /// Once stopped() is true (if it is given), show() waits for nothing any more.
-  CameraStream(Device& device, const EventSink& sink, std::function<bool()> stopped = {})
-      : device_(device), sink_(sink), stopped_(std::move(stopped)) {}
+  /// Once stopped() is true (if it is given), show() waits for nothing any more. Once `halted` is (likewise),
+  /// a rig's emergency stop is said, whatever its camera does: one that is gone, or looked for again, comes
+  /// back after seconds, and its laser would shine for as long.
+  CameraStream(Device& device, const EventSink& sink, std::function<bool()> stopped = {},
+               const std::atomic<bool>* halted = nullptr)
+      : device_(device), sink_(sink), stopped_(std::move(stopped)), halted_(halted) {}
   ~CameraStream();
   CameraStream(const CameraStream&) = delete;
   CameraStream& operator=(const CameraStream&) = delete;
@@ -77,6 +89,9 @@ class CameraStream {
   Device& device_;
   const EventSink& sink_;
   std::function<bool()> stopped_;
+  const std::atomic<bool>* halted_;
+  JobContext no_job_;                            ///< there is none that could be cancelled
+  std::unique_ptr<StopsWhenCancelled> halting_;  ///< of a rig, from before its laser is lit
   bool runs_ = false;
   bool wanted_lit_ = true;
   std::optional<bool> lit_;  ///< nothing: not of a rig

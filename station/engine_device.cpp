@@ -87,7 +87,8 @@ bool Engine::Impl::show_camera() {
     return false;
   }
   if (!stream) {
-    stream = std::make_unique<CameraStream>(source->device(), sink);
+    stream =
+        std::make_unique<CameraStream>(source->device(), sink, std::function<bool()>(), source->halt_flag());
   }
   if (const Status shown = stream->show(); !shown) {
     emit(Notice{shown.error().line()});

@@ -223,7 +223,7 @@ void LiveSession::halt() {
     return;
   }
   if (watch_) {
-    watch_->stop();
+    watch_->halt();
   }
   if (is_away) {  // and nothing begins by itself
     drop_asked();

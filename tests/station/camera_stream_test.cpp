@@ -4,6 +4,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <atomic>
+#include <chrono>
+#include <mutex>
+#include <thread>
 #include <vector>
 
 #include "acquisition/rig_device.h"
@@ -18,6 +22,8 @@ namespace {
 struct FixedBench : test::RigBench {
   int starts = 0;
   bool runs = false;
+  std::atomic<bool> pressed = false;  ///< the emergency stop
+  bool went_dark = false;             ///< before the camera came back
 };
 
 const dubsar_driver& fixed_camera_driver() {
@@ -45,24 +51,50 @@ const dubsar_driver& fixed_camera_driver() {
   return driver;
 }
 
+/// The bench's camera, gone in the moment in which the emergency stop is pressed: a call for a frame of it
+/// comes back late, after the laser is off or nobody has put it off.
+const dubsar_driver& hung_camera_driver() {
+  static const dubsar_driver driver = [] {
+    dubsar_driver out = test::camera_driver();
+    out.next_frame = [](dubsar_device* device, std::uint32_t, dubsar_frame*, dubsar_error*) -> std::int32_t {
+      auto& bench = static_cast<FixedBench&>(test::bench_of(device));
+      bench.pressed = true;
+      const auto is_lit = [&bench] {
+        const std::scoped_lock lock(bench.line);
+        return bench.laser > 0;
+      };
+      const auto patience = std::chrono::steady_clock::now() + std::chrono::seconds(10);
+      while (is_lit() && std::chrono::steady_clock::now() < patience) {
+        std::this_thread::sleep_for(std::chrono::milliseconds(1));
+      }
+      bench.went_dark = !is_lit();
+      return DUBSAR_TIMEOUT;
+    };
+    return out;
+  }();
+  return driver;
+}
+
 class CameraStreamTest : public testing::Test {
  protected:
   CameraStreamTest() {
     test::set_up_small(bench_, scene_.scene);
     bench_.settable = true;
   }
-  Device camera() {
-    return {&fixed_camera_driver(), reinterpret_cast<dubsar_device*>(static_cast<test::RigBench*>(&bench_)),
+  Device camera() { return camera(fixed_camera_driver()); }
+  Device camera(const dubsar_driver& driver) {
+    return {&driver, reinterpret_cast<dubsar_device*>(static_cast<test::RigBench*>(&bench_)),
             "bench_camera:"};
   }
-  Device rig() {
+  Device rig() { return rig(camera()); }
+  Device rig(Device seen_by) {
     RigFile file;
     file.name = "bench rig";
     file.start = -0.5;
     file.step = 0.1;
     file.rows = 11;
     Result<RigScanner> made =
-        RigScanner::make(file, bench_.truth, camera(), test::stage_of(bench_), "rig.toml");
+        RigScanner::make(file, bench_.truth, std::move(seen_by), test::stage_of(bench_), "rig.toml");
     EXPECT_TRUE(made) << made.error().line();
     return device_of(std::move(*made), "rig:rig.toml");
   }
@@ -119,6 +151,17 @@ TEST_F(CameraStreamTest, ALaserThatCannotBePutOffWhenNobodyLooksAnyMoreIsTold) {
   ASSERT_EQ(notices.size(), 1U);
   EXPECT_NE(notices[0].find("the laser may still be on"), std::string::npos) << notices[0];
   EXPECT_NE(notices[0].find("pull its plug"), std::string::npos) << notices[0];
+}
+
+TEST_F(CameraStreamTest, TheEmergencyStopPutsTheLaserOffAlsoWhileTheCameraDoesNotComeBack) {
+  Device device = rig(camera(hung_camera_driver()));
+  {
+    CameraStream stream(device, sink_, {}, &bench_.pressed);
+    ASSERT_TRUE(stream.show());
+    EXPECT_TRUE(bench_.went_dark);
+  }
+  EXPECT_EQ(bench_.laser, 0);
+  EXPECT_NE(bench_.asked.find('E'), std::string::npos) << bench_.asked;
 }
 
 TEST_F(CameraStreamTest, OfACameraAloneNobodyKnowsTheLight) {
