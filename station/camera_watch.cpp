@@ -130,6 +130,9 @@ void CameraWatch::run(const SettingWords& words) {
     sink_(Notice{device.error().line()});
     return;
   }
+  if (halted_) {  // while it was opened: no lamp goes on because of a word from before
+    return;
+  }
   if (const std::string refused = put_kept(*device, words, uri_); !refused.empty()) {
     sink_(Notice{refused});
   }
@@ -152,6 +155,10 @@ void CameraWatch::watch(Device& device) {
       wanted.swap(wanted_);
     }
     for (const ChangeSetting& one : wanted) {
+      if (halted_) {
+        sink_(Notice{kNotSet});
+        return;
+      }
       const Status put = stream.put({{one.key, one.word}}, uri_);
       if (put) {
         changed_(one.key, one.word);

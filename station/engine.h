@@ -81,7 +81,8 @@ class Engine {
   [[nodiscard]] std::vector<OperatorCommand> take_unheeded();
 
   /// The emergency stop, from any thread; returns at once. Lasers go off and motors stop, wherever run() is;
-  /// it then ends like one whose device has failed: what was scanned until then is kept.
+  /// it then ends like one whose device has failed: what was scanned until then is kept. Of a device that is
+  /// being opened no setting is put any more.
   void halt();
 
  private:

@@ -22,7 +22,9 @@ Status Engine::Impl::open_settings() {
     emit(Notice{kept.error().line()});
     kept = SettingWords{};
   }
-  if (const std::string refused = put_kept(source->device(), *kept, options.device); !refused.empty()) {
+  const bool halted = source->halted().has_value();  // then no lamp goes on; the words stay kept
+  if (const std::string refused = halted ? std::string() : put_kept(source->device(), *kept, options.device);
+      !refused.empty()) {
     emit(Notice{refused});
   }
   settings = std::move(*kept);
@@ -30,7 +32,8 @@ Status Engine::Impl::open_settings() {
     SettingWords others = options.settings;  // a window gives what is kept once more
     std::erase_if(others,
                   [&](const auto& one) { return std::ranges::find(settings, one) != settings.end(); });
-    if (const Status put = put_settings(source->device(), others, options.device); !put) {
+    const Status put = halted ? Status() : put_settings(source->device(), others, options.device);
+    if (!put) {
       return put;
     }
     for (const auto& [key, value] : options.settings) {

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cstdlib>
 #include <future>
 #include <mutex>
@@ -131,6 +132,56 @@ TEST_F(LiveSettings, OneThatIsKeptAndFailsKeepsNoOtherFromBeingPut) {
   EXPECT_EQ(shown(*panel, "average"), "4");
   EXPECT_THAT(said, AllOf(HasSubstr("the device has no setting nothing"),
                           HasSubstr("setting light takes one of on, off")));
+}
+
+/// One of them may be the power of a camera's own laser.
+TEST_F(LiveSettings, BehindAnEmergencyStopNoneIsPutAndAllAreKept) {
+  keep("odd:1", {{"gain", "2"}});
+  EngineOptions options;
+  options.device = "odd:1";
+  options.session = session_;
+  options.settings = {{"gain", "2"}, {"average", "4"}};
+  std::shared_ptr<const DevicePanel> panel;
+  Engine engine(options, [&](const Event& event) {
+    if (const auto* device = std::get_if<DeviceTells>(&event)) {
+      panel = device->panel;
+    }
+  });
+  engine.halt();
+  JobContext job;
+  const Result<EngineResult> result = engine.run(job);
+  ASSERT_FALSE(result.has_value());
+  EXPECT_THAT(result.error().line(), HasSubstr("emergency stop was pressed"));
+  ASSERT_TRUE(panel);
+  EXPECT_EQ(shown(*panel, "gain"), "1");
+  EXPECT_EQ(shown(*panel, "average"), "1");
+  EXPECT_THAT(kept("odd:1"), ElementsAre(Pair("gain", "2"), Pair("average", "4")));
+}
+
+TEST_F(LiveSettings, BehindAnEmergencyStopNoneIsPutOfACameraThatIsBeingOpened) {
+  std::promise<void> pressed;
+  std::mutex mutex;
+  std::shared_ptr<const DevicePanel> panel;
+  CameraWatch watch(
+      "odd:1",
+      [&] {
+        pressed.get_future().wait();
+        return SettingWords{{"gain", "2"}};
+      },
+      [&](const Event& event) {
+        const std::scoped_lock lock(mutex);
+        if (const auto* device = std::get_if<DeviceTells>(&event)) {
+          panel = device->panel;
+        }
+      },
+      [](const std::string&, const std::string&) {});
+  watch.halt();
+  pressed.set_value();
+  while (!watch.ended()) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+  const std::scoped_lock lock(mutex);
+  EXPECT_TRUE(!panel || shown(*panel, "gain") == "1") << "it is set to " << shown(*panel, "gain");
 }
 
 }  // namespace
