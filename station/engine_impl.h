@@ -80,6 +80,7 @@ struct Step {
   NextView view;
   StageScene scene;    ///< how the tablet will lie when the motors move
   bool again = false;  ///< the view that was scanned last once more; nothing else is set
+  int retakes = -1;    ///< a scan that is to be taken again
 };
 /// The planner's answer to an automatic run: a step, or that there is nothing more to do.
 using NextStep = std::optional<Step>;
@@ -169,6 +170,7 @@ struct Engine::Impl {
   std::vector<int> in_vain;     ///< scans in a row that were not taken up
   bool laid_otherwise = false;  ///< the tablet, for the last of them
   bool again = false;           ///< the scan that comes is of the same view as the one before
+  NextStep asked_again;         ///< of the last of to_take_again
   std::set<int> taken_up;
   std::set<int> told_foreign;  ///< scans of which it was said that something is left out
   std::map<int, int> lies_as;  ///< placement by scan, of scans that motors were told of
@@ -189,6 +191,7 @@ struct Engine::Impl {
   bool watch_asked = false;              ///< WatchCamera
   bool last_scan_taken_up = true;        ///< as registration has judged it
   std::optional<NextStep> changed_step;  ///< what the operator's commands made of the step that waits
+  std::vector<int> to_take_again;        ///< by a ScanAgain, until a scan is begun for it; the last one first
   std::condition_variable pace;
 
   // What the tablet was scanned with stays as it is until a scan of this run is stored:
@@ -283,6 +286,11 @@ struct Engine::Impl {
   [[nodiscard]] StageScene unseen() const;
   NextStep step_to(const RedMap& red_map) const;
   [[nodiscard]] NextStep step_again(int id) const;  ///< to where a scan was taken from
+  /// What the operator has said of scans that are to be taken again; `as_before`: where to for that.
+  void note_retakes(const ScanToPlan& item, const NextStep& as_before);
+  /// Before what the red map says.
+  NextStep retake_or(NextStep step, const ScanToPlan& item);
+  void begin_retake(const NextStep& step);  ///< under the mutex: a scan begins
   // engine_misses.cpp
   /// Where to after a scan: by the red map when the scan was taken up; else the same view again, or one that
   /// has more in common with the others, then one of the tablet laid otherwise, then nothing more.
@@ -321,7 +329,7 @@ struct Engine::Impl {
                                JobContext& job);
   void plan_all(JobContext& job);
   /// Of a paced run with a device that nothing drives and that has no end: ends it once nothing is left to
-  /// do, but not before it has taken the scan that was asked for.
+  /// do, but not before it has taken the scan that was asked for, nor one that is to be taken again.
   void end_conclusive(const RedMap& red_map, const ScanToPlan& item);
   void tell_foreign();  ///< what the planning stage has left out of scans, once of each
   std::vector<ScanPose> named_poses() const;

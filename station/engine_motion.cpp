@@ -145,7 +145,43 @@ bool Engine::Impl::move_to(const Placement& target, const StageScene& on_stage, 
 NextStep Engine::Impl::step_again(int id) const {
   const std::optional<NextView> view = rig ? planning.same_view(*rig, id) : std::nullopt;
   // The scan that goes may be the one that tells how the tablet lies: room for whatever way it does.
-  return view ? NextStep(Step{.view = *view, .scene = unseen(), .again = false}) : std::nullopt;
+  return view ? NextStep(Step{.view = *view, .scene = unseen(), .again = false, .retakes = id})
+              : std::nullopt;
+}
+
+void Engine::Impl::note_retakes(const ScanToPlan& item, const NextStep& as_before) {
+  const std::scoped_lock lock(mutex);
+  std::erase_if(to_take_again, [&](int id) {  // one that was put back, or is asked for once more
+    return item.view_of == id || std::ranges::find(item.poses, id, &ScanPose::id) != item.poses.end();
+  });
+  if (item.view_of && (!drives || as_before)) {
+    to_take_again.push_back(*item.view_of);
+    asked_again = as_before;
+  }
+}
+
+NextStep Engine::Impl::retake_or(NextStep step, const ScanToPlan& item) {
+  int id = -1;
+  {
+    const std::scoped_lock lock(mutex);
+    id = device_error || to_take_again.empty() ? -1 : to_take_again.back();
+  }
+  if (id < 0) {
+    return step;
+  }
+  // For a scan that has come since, the tablet may have been laid otherwise.
+  if (item.device_waits || !asked_again || asked_again->retakes != id) {
+    asked_again = step_again(id);
+  }
+  return asked_again ? asked_again : step;
+}
+
+void Engine::Impl::begin_retake(const NextStep& step) {
+  if (drives) {
+    std::erase(to_take_again, step ? step->retakes : -1);
+  } else if (!to_take_again.empty()) {
+    to_take_again.pop_back();
+  }
 }
 
 NextStep Engine::Impl::step_to(const RedMap& red_map) const {

@@ -16,7 +16,8 @@ bool Engine::Impl::must_wait(const NextStep& step) const {
     return true;
   }
   const bool by_hand = step && step->view.placement && step->view.placement->hand_turn;
-  return by_hand || !(last_scan_taken_up || waits_for_hands_alone);
+  const bool retakes = step && step->retakes >= 0;  // nothing moves because a scan was taken out
+  return by_hand || retakes || !(last_scan_taken_up || waits_for_hands_alone);
 }
 
 std::shared_ptr<void> Engine::Impl::begin_thought() {
@@ -60,6 +61,7 @@ bool Engine::Impl::wait_for_operator(NextStep& step, const JobContext& job) {
     if (settled && ((told && scan_asked) || !(changed || must_wait(step)))) {
       scan_asked = false;
       asked_once = true;
+      begin_retake(step);
       return true;
     }
     if (settled && !told) {
@@ -91,7 +93,7 @@ bool Engine::Impl::wait_for_operator(NextStep& step, const JobContext& job) {
 void Engine::Impl::end_conclusive(const RedMap& red_map, const ScanToPlan& item) {
   const std::scoped_lock lock(mutex);
   const bool is_due = options.first_scan_waits || (asked_once && !item.resumed);
-  const bool ends = red_map.conclusive && is_due && !item.view_of;  // that one is to be taken again
+  const bool ends = red_map.conclusive && is_due && to_take_again.empty();
   changed_step.reset();
   if (ends) {
     changed_step.emplace(std::nullopt);

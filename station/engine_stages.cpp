@@ -164,7 +164,7 @@ void Engine::Impl::plan_all(JobContext& job) {
     }
     const StageClock timing = clock("planning and meshing");
     // While it is known where the scan lies that was taken out.
-    const NextStep as_before = item->view_of && drives ? step_again(*item->view_of) : std::nullopt;
+    note_retakes(*item, item->view_of && drives ? step_again(*item->view_of) : std::nullopt);
     if (const Status placed = planning.place(item->poses, false, job); !placed) {
       give_up(placed.error());
       continue;
@@ -178,13 +178,16 @@ void Engine::Impl::plan_all(JobContext& job) {
     if (drives && item->device_waits) {
       const bool fresh = item->scan && !item->resumed;
       NextStep step = fresh ? step_after(item->scan->id, item->poses, *red_map, job) : step_to(*red_map);
+      if (in_vain.empty() && !(step && step->again)) {  // else what came is seen to first
+        step = retake_or(std::move(step), *item);
+      }
       {
         const std::scoped_lock lock(mutex);
         changed_step.reset();
       }
       queues->to_device.push(std::move(step));
     } else if (drives && options.paced) {
-      NextStep step = as_before ? as_before : step_to(*red_map);
+      NextStep step = retake_or(step_to(*red_map), *item);
       const std::scoped_lock lock(mutex);
       changed_step = std::move(step);
     } else if (!drives && options.paced && !source->capabilities().finite) {

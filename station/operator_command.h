@@ -17,7 +17,8 @@ struct DropScan {
   int id = -1;  ///< -1: the newest that stands
   std::string why;
 };
-/// Takes a scan out, and proposes its view as the next, where the rig was driven to it.
+/// Takes a scan out, and proposes its view as the next, where the rig was driven to it: behind the scan under
+/// way, if there is one, and whatever else is said meanwhile.
 struct ScanAgain {
   int id = 0;
 };
