@@ -323,6 +323,9 @@ struct Engine::Impl {
   /// Into the model, as the operator's word on it has it. Failed where it would lie too far from its origin.
   ScanPose register_scan(const StationScan& scan, JobContext& job);
   void register_all(JobContext& job);
+  /// Where pins were labelled while a scan waited to be registered: what of it is clay by what is known now.
+  /// False where it is not on the disk.
+  bool prepare_again(StationScan& scan);
   /// Takes out scans that show a hand or the like, that one included, and says so; then what they stood in
   /// the way of is tried again. engine_misses.cpp
   ScanPose set_intruders_aside(const StationScan& scan, ScanPose pose, std::vector<SetAside>& aside,

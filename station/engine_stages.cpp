@@ -83,12 +83,34 @@ ScanPose Engine::Impl::register_scan(const StationScan& scan, JobContext& job) {
           : registrar.add(scan.id, scan.measured, said, job));
 }
 
+bool Engine::Impl::prepare_again(StationScan& scan) {
+  const std::optional<PinSet> pins_now = known_pins();
+  if (scan.said_tip_mm == (pins_now ? pins_now->tip_diameter_mm : 0.0)) {
+    return true;
+  }
+  if (scan.stored.valid() && !scan.stored.get()) {
+    return false;
+  }
+  Result<RangeGrid> grid = store->load_grid(scan.id);  // as it came
+  if (!grid) {
+    emit(Notice{grid.error().line()});
+    return true;
+  }
+  StationScan anew = prepare_scan(scan.id, std::move(*grid), pins_now);
+  anew.drive = scan.drive;
+  scan = std::move(anew);
+  return true;
+}
+
 void Engine::Impl::register_all(JobContext& job) {
   const auto handle = [&](StationScan scan, bool plan_now, bool is_resumed) {
     // The operator may have taken it out, and put it back, while it waited here: it is on disk before.
     if (!is_resumed && (taken_out.contains(scan.id) || names.contains(scan.id))) {
       queues->to_plan.push({std::nullopt, named_poses(), plan_now, true, false});
       return;
+    }
+    if (!is_resumed && !prepare_again(scan)) {
+      return;  // it is lost; the run ends
     }
     names[scan.id] = scan.file;
     ScanPose pose = register_scan(scan, job);

@@ -19,6 +19,7 @@ StationScan prepare_scan(int id, RangeGrid grid, const std::optional<PinSet>& pi
   if (grid.spacing_mm <= 0) {
     grid.spacing_mm = estimate_spacing_mm(grid);
   }
+  scan.said_tip_mm = pins ? pins->tip_diameter_mm : 0;
   if (pins && grid.pin_tip_diameter_mm <= 0) {
     grid.pin_tip_diameter_mm = pins->tip_diameter_mm;
   }

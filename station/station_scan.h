@@ -25,6 +25,7 @@ struct StationScan {
   std::shared_ptr<const RangeGrid> grid;      ///< the tablet alone
   std::shared_ptr<const SampleFlags> flags;
   std::optional<Placement> drive;  ///< turntable and tilt that it was taken with, where the rig has them
+  double said_tip_mm = 0;          ///< of the pins that it was prepared with; 0: none were known
   /// Of a scan that is worked on while it is being stored: true once it is on disk, false when it will not
   /// be. Invalid for one that came from the disk. Nothing of the scan is told or saved before.
   std::shared_future<bool> stored;

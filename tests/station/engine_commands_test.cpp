@@ -379,6 +379,35 @@ TEST(EngineCommands, LabelsThatAreTakenBackAreNoPinsAnyMore) {
   EXPECT_FALSE(pins->has_value());
 }
 
+/// It is on the disk, and was made ready as if it had none.
+TEST(EngineCommands, PinsThatAreLabelledWhileAScanWaitsToBePlacedAreNoClayOfIt) {
+  const test::TemporaryFolder folder;
+  const auto scans = test::write_bumpy_scans(folder.path() / "scans", 2);
+  std::promise<void> waits, labelled;
+  std::atomic<double> tip_mm = -1;
+  Engine engine({"replay:" + scans.string(), folder.path() / "s", false, 0, std::nullopt},
+                [&](const Event& event) {
+                  const auto* stored = std::get_if<ScanStored>(&event);
+                  const auto* placed = std::get_if<ScanPlaced>(&event);
+                  if (stored != nullptr && stored->id == 1) {
+                    waits.set_value();
+                  } else if (placed != nullptr && placed->pose.id == 0) {
+                    labelled.get_future().wait();  // the other waits behind it
+                  } else if (placed != nullptr) {
+                    tip_mm = placed->measured->pin_tip_diameter_mm;
+                  }
+                });
+  JobContext job;
+  std::optional<Result<EngineResult>> result;
+  std::jthread runs([&] { result.emplace(engine.run(job)); });
+  EXPECT_EQ(waits.get_future().wait_for(std::chrono::seconds(30)), std::future_status::ready);
+  EXPECT_TRUE(engine.post(LabelPins{0, {{1, {3, 4, 5}}}, 1.5}));
+  labelled.set_value();
+  runs.join();
+  ASSERT_TRUE(*result) << result->error().line();
+  EXPECT_EQ(tip_mm, 1.5);
+}
+
 TEST(EngineCommands, TheDiameterOfTheFileHoldsAgainOnceAllLabelsAreTakenBack) {
   const test::TemporaryFolder folder;
   SessionStore store = SessionStore::open_or_create(folder.path() / "session").value();
