@@ -279,6 +279,34 @@ TEST_F(MeshInput, TwoSideBySideTurnTogetherOrAlone) {
   EXPECT_EQ(broken.status, 2);
 }
 
+TEST_F(MeshInput, OfTwoSideBySideTheSideThatWasAskedForStaysWhenTheWindowIsResized) {
+  const auto in = [&](const char* name) { return (folder_.path() / name).string(); };
+  std::ofstream(in("left.obj")) << grooved_plate();
+  std::ofstream(in("pair.script")) << "wait whole\nwait idle\nkey 3\nresize 1100 700\nwait whole\nscreenshot "
+                                   << in("resized.png") << "\nkey 3\nwait whole\nscreenshot "
+                                   << in("edge.png") << "\nkey 1\nwait whole\nscreenshot "
+                                   << in("obverse.png") << "\nquit\n";
+  const Outcome outcome = run_command({"view", in("left.obj"), in("left.obj"), "--script", in("pair.script"),
+                                       "--width", "1300", "--height", "700"});
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const Image resized = test::read_png(in("resized.png"));
+  ASSERT_EQ(resized.width, 1100);
+  // Mean difference, names and bars of scale aside.
+  const auto unlike = [&](const char* name) {
+    const Image other = test::read_png(in(name));
+    double sum = 0;
+    int count = 0;
+    for (int y = 150; y < 590; ++y) {
+      for (int x = 60; x < resized.width - 60; ++x, ++count) {
+        sum += std::abs(int{resized.rgb(x, y)[0]} - int{other.rgb(x, y)[0]});
+      }
+    }
+    return sum / count;
+  };
+  EXPECT_LT(unlike("edge.png"), 0.5);
+  EXPECT_GT(unlike("obverse.png"), 3);
+}
+
 TEST_F(MeshInput, OfTwoSideBySideEachIsDoubtedAsItIsAlone) {
   const auto in = [&](const char* name) { return (folder_.path() / name).string(); };
   std::ofstream(in("left.obj")) << grooved_plate();

@@ -6,7 +6,9 @@
 
 #include <GLFW/glfw3.h>
 
+#include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <sstream>
 #include <utility>
 
@@ -58,7 +60,8 @@ const std::map<std::string, ScriptStep::Kind>& kinds() {
       {"key", Kind::kKey},     {"click", Kind::kClick},   {"doubleclick", Kind::kDoubleClick},
       {"drag", Kind::kDrag},   {"wheel", Kind::kWheel},   {"type", Kind::kType},
       {"wait", Kind::kWait},   {"expect", Kind::kExpect}, {"screenshot", Kind::kScreenshot},
-      {"pause", Kind::kPause}, {"quit", Kind::kQuit},     {"halt", Kind::kKey}};
+      {"pause", Kind::kPause}, {"resize", Kind::kResize}, {"quit", Kind::kQuit},
+      {"halt", Kind::kKey}};
   return kKinds;
 }
 
@@ -89,9 +92,9 @@ Result<std::vector<ScriptStep>> parse_script(std::string_view text, const std::s
     const std::string place = where + ":" + std::to_string(number);
     const auto kind = kinds().find(verb);
     if (kind == kinds().end()) {
-      return fail(
-          ErrorKind::kUsage, "there is no step '" + verb + "'", place,
-          "it is key, click, doubleclick, drag, wheel, type, wait, expect, screenshot, pause, halt or quit");
+      return fail(ErrorKind::kUsage, "there is no step '" + verb + "'", place,
+                  "it is key, click, doubleclick, drag, wheel, type, wait, expect, screenshot, pause, "
+                  "resize, halt or quit");
     }
     ScriptStep step;
     step.kind = kind->second;
@@ -104,7 +107,9 @@ Result<std::vector<ScriptStep>> parse_script(std::string_view text, const std::s
     } else if (step.kind == Kind::kType || step.kind == Kind::kScreenshot) {
       step.name = rest_of(words);
     } else {
-      if (step.kind != Kind::kPause && step.kind != Kind::kQuit) {
+      if (step.kind == Kind::kResize) {
+        step.name = verb;
+      } else if (step.kind != Kind::kPause && step.kind != Kind::kQuit) {
         words >> step.name;
       }
       std::string word;
@@ -124,7 +129,10 @@ Result<std::vector<ScriptStep>> parse_script(std::string_view text, const std::s
           step.right = true;
         }
       }
-      wants = step.kind == Kind::kDrag ? 4 : step.kind == Kind::kWheel || step.kind == Kind::kPause ? 1 : 0;
+      wants = step.kind == Kind::kDrag                                 ? 4
+              : step.kind == Kind::kResize                             ? 2
+              : step.kind == Kind::kWheel || step.kind == Kind::kPause ? 1
+                                                                       : 0;
     }
     const bool nameless = step.name.empty() && step.kind != Kind::kPause && step.kind != Kind::kQuit;
     const bool odd_click = is_click && step.numbers.size() != 0 && step.numbers.size() != 2;
@@ -277,6 +285,16 @@ void ScriptPlayer::inject(const UiContext& ui, double now_s) {
         go_on();
       }
       return;
+    case Kind::kResize: {
+      const int width = std::max(1, static_cast<int>(step.numbers[0]));
+      const int height = std::max(1, static_cast<int>(step.numbers[1]));
+      if (frame_++ == 0) {
+        glfwSetWindowSize(glfwGetCurrentContext(), width, height);
+      } else if (std::lround(io.DisplaySize.x) == width && std::lround(io.DisplaySize.y) == height) {
+        go_on();
+      }
+      return;
+    }
     case Kind::kQuit:
       next_ = steps_.size();
       return;

@@ -27,11 +27,12 @@ struct ScriptStep {
     kExpect,
     kScreenshot,
     kPause,
+    kResize,
     kQuit
   };
   Kind kind = Kind::kQuit;
   std::string name;             ///< of a key, a target, a fact or a file; the text to type
-  std::vector<double> numbers;  ///< places within the target, parts of its size; seconds to wait
+  std::vector<double> numbers;  ///< places within the target, parts of its size; seconds to wait; a size
   bool right = false;           ///< the right mouse button
   int line = 0;
 };

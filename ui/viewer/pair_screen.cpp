@@ -89,6 +89,7 @@ void PairScreen::take_state(UiContext& ui, Pane& pane) {
 
 /// Both, as large as the larger one allows.
 void PairScreen::look_at(Face face) {
+  face_ = face;
   float half_height_mm = 0;
   for (Pane& pane : panes_) {
     if (!pane.surface.empty()) {
@@ -129,7 +130,7 @@ void PairScreen::draw(UiContext& ui, ImVec2 size) {
   if (aspect_ != half.x / half.y) {
     aspect_ = half.x / half.y;
     if (untouched_) {
-      look_at(Face::kObverse);
+      look_at(face_);
     }
   }
   draw_pane(ui, panes_[0], "left-tablet", half);

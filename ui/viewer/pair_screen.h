@@ -39,7 +39,8 @@ class PairScreen {
   std::array<Pane, 2> panes_;
   Look look_;
   bool together_ = true;
-  bool untouched_ = true;  ///< both are still as they were set up
+  Face face_ = Face::kObverse;  ///< that was asked for last
+  bool untouched_ = true;       ///< both are still as they were set up
   float aspect_ = 1;
   bool unfinished_ = false;
 };
