@@ -234,6 +234,31 @@ TEST_F(MeshInput, APictureIsToScaleAlsoAboveWhatACardDrawsAtOnce) {
   }
 }
 
+/// It says what its colours mean where it is looked at without the window.
+TEST_F(MeshInput, APictureOfAnOverlayHasItsLegendAboveTheSurface) {
+  const auto before = std::filesystem::current_path();
+  std::filesystem::current_path(folder_.path());
+  const Outcome outcome =
+      look_at("plate.obj", grooved_plate(),
+              "wait whole\nwait idle\nclick keep-picture\nwait picture-kept\nclick overlay\n"
+              "click overlay.Openness\nwait legend\nwait whole\nclick keep-picture\n"
+              "pause 0.1\nwait picture-kept\nquit\n");
+  std::filesystem::current_path(before);
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const auto drawn = [&](const char* name) {
+    const Image picture = test::read_png(folder_.path() / name);
+    int count = 0;
+    for (int y = 0; y < static_cast<int>(3 * 600 / 25.4); ++y) {
+      for (int x = 0; x < picture.width; ++x) {
+        count += picture.rgb(x, y) == Rgb8{0, 0, 0} ? 0 : 1;
+      }
+    }
+    return count;
+  };
+  EXPECT_EQ(drawn("plate_600dpi_01.png"), 0) << "clay needs none";
+  EXPECT_GT(drawn("plate_600dpi_02.png"), 500);
+}
+
 TEST_F(MeshInput, TwoSideBySideTurnTogetherOrAlone) {
   std::ofstream(folder_.path() / "left.obj") << grooved_plate();
   std::ofstream(folder_.path() / "right.obj") << grooved_plate();

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright The Dubsar developers
 // Pictures that are kept: to scale, at any resolution, drawn and written while the window goes on.
+#include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <cstdint>
 
 #include "archive/scale_bar.h"
 #include "station/picture_file.h"
@@ -16,8 +18,58 @@ namespace {
 constexpr double kMmPerInch = 25.4;
 /// As many pixels as a picture is given: 1.2 GB, and what packing it takes.
 constexpr double kMostMegapixels = 400;
+/// As high as a legend may be to stay above the surface.
+constexpr double kLegendMm = 2.8;
+
+Text word_of(MeshField field) {
+  switch (field) {
+    case MeshField::kOpenness:
+      return Text::kOverlayOpenness;
+    case MeshField::kMeanCurvature:
+      return Text::kOverlayCurvature;
+    case MeshField::kHeight:
+      return Text::kOverlayHeight;
+    case MeshField::kInvariant:
+      return Text::kOverlayMsii;
+    case MeshField::kSigma:
+      return Text::kOverlaySigma;
+  }
+  return Text::kOverlay;
+}
+
+Rgb8 rgb_of(const Eigen::Vector3f& colour) {
+  const auto part = [&](int k) {
+    return static_cast<std::uint8_t>(std::lround(255 * std::clamp(colour[k], 0.0F, 1.0F)));
+  };
+  return {part(0), part(1), part(2)};
+}
 
 }  // namespace
+
+std::optional<ColourLegend> ViewerScreen::picture_legend() const {
+  // In English, as the files have it: the letters of pictures are ASCII.
+  const auto word = [](Text text) { return std::string(text_of(text, Language::kEnglish)); };
+  ColourLegend legend;
+  if (look_.overlay == Overlay::kFlags) {
+    legend.name = word(Text::kOverlayFlags);
+    legend.marks = {{word(Text::kSparse), rgb_of(look_.red)}, {word(Text::kFilledIn), rgb_of(look_.amber)}};
+    return legend;
+  }
+  if (look_.overlay == Overlay::kValue && field_) {
+    legend.name = word(word_of(*field_));
+    legend.low = static_cast<double>(look_.value_range.x());
+    legend.high = static_cast<double>(look_.value_range.y());
+  } else if (look_.overlay == Overlay::kReliability || look_.overlay == Overlay::kScans) {
+    const bool scans = look_.overlay == Overlay::kScans;
+    legend.name = word(scans ? Text::kOverlayScans : Text::kOverlayReliability);
+    legend.high = scans ? 8 : 1;
+  } else {
+    return std::nullopt;
+  }
+  const auto colours = overlay_colours();
+  legend.colours.assign(colours.begin(), colours.end());
+  return legend;
+}
 
 /// To scale: the whole surface as it is turned now, a margin and a bar, so many pixels to the inch.
 void ViewerScreen::begin_picture(const UiContext& ui) {
@@ -43,6 +95,7 @@ void ViewerScreen::begin_picture(const UiContext& ui) {
   look.ground = {0, 0, 0, 1};
   picture_note_.clear();
   still_mm_per_px_ = mm_per_px;
+  still_legend_ = picture_legend();
   still_file_ = unused_file(fmt::format("{}dpi", dpi_), {".png"});
   still_.emplace(camera, look, static_cast<int>(width), static_cast<int>(height));
 }
@@ -63,11 +116,17 @@ void ViewerScreen::draw_picture_on(UiContext& ui) {
       Image picture = still_->take();
       still_.reset();
       picture.mm_per_px = still_mm_per_px_;
-      writing_ = std::async(std::launch::async, [picture = std::move(picture), file = still_file_]() mutable {
+      writing_ = std::async(std::launch::async, [picture = std::move(picture), file = still_file_,
+                                                 legend = still_legend_]() mutable {
         const ScaleBar bar = scale_bar_for(picture.mm_per_px, picture.width);
         const int margin = static_cast<int>(1.0 / picture.mm_per_px);
         dubsar::draw_scale_bar(picture, bar, margin, picture.height - bar.height_px - margin,
                                {255, 255, 255});
+        if (legend) {
+          const int rows = static_cast<int>(kLegendMm / picture.mm_per_px);
+          draw_colour_legend(picture, *legend, margin, margin, std::min(bar.text_scale, rows / kLegendRows),
+                             {255, 255, 255});
+        }
         Status written = write_picture(file, picture, {.title = file.stem().string()});
         wake_window();
         return written;

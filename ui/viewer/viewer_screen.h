@@ -14,6 +14,7 @@
 #include <utility>
 #include <vector>
 
+#include "archive/colour_legend.h"
 #include "core/red_map.h"
 #include "core/result.h"
 #include "station/mesh_viewing.h"
@@ -84,6 +85,8 @@ class ViewerScreen {
   void choose(int wedge, bool go_there);
   // viewer_picture.cpp
   void begin_picture(const UiContext& ui);
+  /// Of a picture of what is shown; nothing where its colours are the clay's, or of its own.
+  [[nodiscard]] std::optional<ColourLegend> picture_legend() const;
   void give_up_picture();
   void draw_picture_on(UiContext& ui);
   void draw_picture_foot(UiContext& ui);
@@ -153,6 +156,7 @@ class ViewerScreen {
   int dpi_ = 600;
   std::optional<StillPicture> still_;  ///< that is being drawn
   double still_mm_per_px_ = 0;
+  std::optional<ColourLegend> still_legend_;
   std::filesystem::path still_file_;
   std::future<Status> writing_;
   bool picture_kept_ = false;
