@@ -94,6 +94,14 @@ Status Camera::configure() {
     arv_device_set_boolean_feature_value(device_, "ChunkModeActive", TRUE, error.fill());
     has_encoder_chunk_ = !error;
   }
+  const auto has = [&](const char* name) { return arv_device_get_feature(device_, name) != nullptr; };
+  if (has_encoder_chunk_ && has("ChunkSelector") && has("ChunkEnable")) {
+    GErrorHolder refused;  // by one that sends it always
+    arv_device_set_string_feature_value(device_, "ChunkSelector", "EncoderValue", refused.fill());
+    if (!refused) {
+      arv_device_set_boolean_feature_value(device_, "ChunkEnable", TRUE, refused.fill());
+    }
+  }
   return {};
 }
 

@@ -44,6 +44,11 @@ class Scan {
     return frame.camera_restarted && frame.encoder && camera_.options().encoder_mm != 0;
   }
 
+  /// True where the rows are placed by a count that does not come.
+  [[nodiscard]] bool lacks_count(const Taken& frame) const {
+    return !frame.encoder && camera_.options().encoder_mm != 0;
+  }
+
   /// True where so much is lost before this frame, or its number is so far off, that the scan would be over
   /// with less than half of it.
   [[nodiscard]] bool jumps_to_the_end(const Taken& frame) const {
@@ -154,6 +159,11 @@ Status stream_rows(Camera& camera, Scan& scan, const std::atomic<bool>& stopped)
       return fail(ErrorKind::kDevice,
                   "the camera started anew in mid-scan, and its encoder counts from elsewhere", camera.id(),
                   "see to its power supply, then scan again");
+    }
+    if (scan.lacks_count(**frame)) {
+      camera.give_back((*frame)->lease);
+      return fail(ErrorKind::kDevice, "the camera sends no count of its encoder along with its profiles",
+                  camera.id(), "see that its encoder is set up, or leave count= away");
     }
     if (scan.jumps_to_the_end(**frame)) {
       camera.give_back((*frame)->lease);

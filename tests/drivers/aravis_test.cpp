@@ -181,6 +181,19 @@ TEST_F(Aravis, ARangeCameraYieldsProfiles) {
   }
 }
 
+/// Rows that an encoder is to place lay evenly apart instead, wherever the stage was.
+TEST_F(Aravis, ACountThatTheCameraDoesNotSendIsNotMadeUp) {
+  Device device = open({{"rows", "200"}, {"row", "0.1"}, {"count", "0.001"}}).value();
+  Rows rows;
+  const auto outcome = device.scan(rows);
+  ASSERT_FALSE(outcome);
+  EXPECT_EQ(outcome.error().kind, ErrorKind::kDevice);
+  EXPECT_NE(outcome.error().line().find("sends no count of its encoder"), std::string::npos)
+      << outcome.error().line();
+  EXPECT_TRUE(rows.rows.empty());
+  EXPECT_TRUE(rows.tally);
+}
+
 TEST_F(Aravis, FormatsWithMoreAxesBringTheirOwnX) {
   ASSERT_EQ(peer_->tell("write 2104 2"), "ok");
   {
