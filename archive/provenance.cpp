@@ -8,6 +8,7 @@
 #include <iterator>
 #include <set>
 
+#include "archive/file_address.h"
 #include "archive/rights.h"
 #include "formats/json_text.h"
 
@@ -22,7 +23,7 @@ OrderedJson reference(const std::string& id) {
 OrderedJson references(const std::string& base_url, const std::vector<std::string>& files) {
   OrderedJson list = OrderedJson::array();
   for (const std::string& file : files) {
-    list.push_back(reference(base_url + file));
+    list.push_back(reference(base_url + path_in_address(file)));
   }
   return list;
 }
@@ -134,7 +135,7 @@ OrderedJson scan_node(const ProvenanceInput& input, const std::set<std::string>&
     node["crm:P4_has_time-span"] = scan.stored_only ? time_span_until(scan.when) : time_span(scan.when);
   }
   if (!scan.file.empty()) {
-    node["crmdig:L20_has_created"] = {{"@id", input.base_url + scan.file},
+    node["crmdig:L20_has_created"] = {{"@id", input.base_url + path_in_address(scan.file)},
                                       {"@type", "crmdig:D9_Data_Object"}};
   }
   node["crm:P43_has_dimension"] = dimensions(scan.values);

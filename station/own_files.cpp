@@ -4,6 +4,7 @@
 
 #include <string_view>
 
+#include "archive/file_address.h"
 #include "formats/atomic_file.h"
 #include "formats/bag_check.h"
 #include "formats/json_node.h"
@@ -48,7 +49,7 @@ std::set<std::string> made_by_provenance(const std::string& text) {
   std::string base;  // of every address; it describes itself first
   const auto add = [&](const std::string& id) {
     if (!base.empty() && id.starts_with(base)) {
-      made.insert(id.substr(base.size()));
+      made.insert(path_of_address(std::string_view(id).substr(base.size())));
     }
   };
   for (const JsonNode& node : document->root().at("@graph").items()) {

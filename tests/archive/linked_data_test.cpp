@@ -10,6 +10,7 @@
 #include <sstream>
 
 #include "archive/canvas_annotations.h"
+#include "archive/file_address.h"
 #include "archive/iiif_manifest.h"
 #include "archive/provenance.h"
 #include "archive/rights.h"
@@ -311,6 +312,34 @@ TEST(Provenance, SaysWhoSignedAndWhenScansWithoutATimeWereStored) {
   const auto person = find(signing["crm:P14_carried_out_by"]["@id"].get<std::string>().substr(22));
   EXPECT_EQ(person["rdfs:label"], "A. Reader");
   EXPECT_EQ(person["crm:P3_has_note"], "conservator");
+}
+
+TEST(Provenance, NamesFilesByAddressesThatHoldTheirNames) {
+  ProvenanceInput input;
+  input.base_url = "https://example.org/t/";
+  input.program = "Dubsar";
+  ProvenanceStep packing;
+  packing.name = "packing";
+  packing.made = {"kept/mesh/old model #2, 50%.ply", "model/BM_1.draco.glb"};
+  input.steps = {packing};
+  const auto json = nlohmann::json::parse(provenance_jsonld(input));
+  std::vector<std::string> made;
+  for (const auto& node : json["@graph"]) {
+    if (node["@id"] == "https://example.org/t/provenance/packing") {
+      for (const auto& file : node["crmdig:L22_created_derivative"]) {
+        made.push_back(file["@id"].get<std::string>());
+      }
+    }
+  }
+  EXPECT_THAT(made,
+              ::testing::ElementsAre("https://example.org/t/kept/mesh/old%20model%20%232%2C%2050%25.ply",
+                                     "https://example.org/t/model/BM_1.draco.glb"));
+  for (const char* name : {"kept/mesh/old model #2, 50%.ply", "\xC3\xA4/%41", "\xff?", "a%", "%2"}) {
+    const std::string path = name;
+    const std::string address = path_in_address(path);
+    EXPECT_EQ(address.find_first_of(" #?\xC3\xA4\xff"), std::string::npos) << address;
+    EXPECT_EQ(path_of_address(address), path);
+  }
 }
 
 TEST(Provenance, AScanHappenedOnTheDeviceThatItNames) {
