@@ -193,7 +193,7 @@ class Corrector {
     std::ranges::copy_if(company_, std::back_inserter(judged), [&](const WedgeCandidate& one) {
       return one.wedge.place.body == company_.back().wedge.place.body;
     });
-    judge_wedges(options_.judge, &judged);
+    judge_last_wedge(options_.judge, &judged);
     WedgeCandidate& c = company_.back();
     c.wedge.confidence = judged.back().wedge.confidence;  // whatever it is: a person says that it is one
     c.evidence = judged.back().evidence;

@@ -158,9 +158,8 @@ std::string out_of_bounds(const JudgeOptions& options, const WedgeCandidate& c) 
   return {};
 }
 
-}  // namespace
-
-void judge_wedges(const JudgeOptions& options, std::vector<WedgeCandidate>* candidates) {
+/// Judges the candidates from `first` on, beside all.
+void judge_from(std::size_t first, const JudgeOptions& options, std::vector<WedgeCandidate>* candidates) {
   std::vector<WedgeCandidate*> open;
   for (WedgeCandidate& c : *candidates) {
     if (c.rejected.empty()) {
@@ -181,17 +180,20 @@ void judge_wedges(const JudgeOptions& options, std::vector<WedgeCandidate>* cand
       widths.push_back(width_mm(*c));
     }
   }
+  std::erase_if(open, [&](const WedgeCandidate* c) { return c < candidates->data() + first; });
   const bool enough = good.size() >= kFewest;
+  const double typical_depth = enough ? median_of(std::move(depths)) : 0.0;
+  const double typical_width = enough ? median_of(std::move(widths)) : 0.0;
   if (enough) {
     std::vector<std::uint8_t> is_good(candidates->size(), 0);
     for (const WedgeCandidate* c : good) {
       is_good[static_cast<std::size_t>(c - candidates->data())] = 1;
     }
-    note_company(*candidates, is_good, median_of(widths), options.most_round, &open);
+    note_company(*candidates, is_good, typical_width, options.most_round, &open);
   }
   for (WedgeCandidate* c : open) {
     if (enough) {
-      compare(good, median_of(depths), median_of(widths), c);
+      compare(good, typical_depth, typical_width, c);
     }
     const double odds = (enough ? kAmongOthers : kAlone).of(c->evidence);
     c->wedge.confidence = 1.0 / (1.0 + std::exp(-odds));
@@ -199,6 +201,16 @@ void judge_wedges(const JudgeOptions& options, std::vector<WedgeCandidate>* cand
       c->rejected = "confidence too low";
     }
   }
+}
+
+}  // namespace
+
+void judge_wedges(const JudgeOptions& options, std::vector<WedgeCandidate>* candidates) {
+  judge_from(0, options, candidates);
+}
+
+void judge_last_wedge(const JudgeOptions& options, std::vector<WedgeCandidate>* candidates) {
+  judge_from(candidates->size() - 1, options, candidates);
 }
 
 }  // namespace dubsar

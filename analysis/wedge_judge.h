@@ -29,4 +29,7 @@ struct JudgeOptions {
 /// nothing. Deterministic.
 void judge_wedges(const JudgeOptions& options, std::vector<WedgeCandidate>* candidates);
 
+/// The same of the last one alone, beside all of them; the others are not judged. There is one at least.
+void judge_last_wedge(const JudgeOptions& options, std::vector<WedgeCandidate>* candidates);
+
 }  // namespace dubsar

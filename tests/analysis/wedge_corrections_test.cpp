@@ -184,6 +184,23 @@ TEST(WedgeCorrections, AreJudgedBesideTheWedgesOfTheirOwnBody) {
   EXPECT_EQ(added(findings), added(alone)) << "what lies on another body says nothing of it";
 }
 
+TEST(WedgeCorrections, JudgeTheirOwnWedgeAloneAsItWouldBeAmongAll) {
+  std::vector<WedgeCandidate> all = found().findings.candidates;
+  std::erase_if(all, [](const WedgeCandidate& c) { return !c.rejected.empty(); });
+  ASSERT_GT(all.size(), 20U);
+  std::vector<WedgeCandidate> last = all;
+  for (WedgeCandidate& c : last) {
+    c.wedge.confidence = -1;
+  }
+  judge_wedges({}, &all);
+  judge_last_wedge({}, &last);
+  EXPECT_EQ(last.back().wedge.confidence, all.back().wedge.confidence);
+  EXPECT_EQ(last.back().evidence, all.back().evidence);
+  last.pop_back();
+  EXPECT_TRUE(std::ranges::all_of(last, [](const WedgeCandidate& c) { return c.wedge.confidence == -1; }))
+      << "each of thousands takes as long as there are others to compare it with";
+}
+
 /// Deletes a wedge and adds it in two halves, cut by a plane through its depth point, the way that gives two
 /// wedges; nothing where no way does.
 std::vector<WedgeCorrection> in_halves(const Wedge& wedge) {
