@@ -165,6 +165,8 @@ Result<EngineResult> Engine::run(JobContext& job) {
   }
   if (impl_->source && impl_->store) {
     impl_->change_settings();  // those that came behind the last scan
+  } else {
+    impl_->tell_unset();
   }
   if (!result && result.error().kind == ErrorKind::kCancelled) {
     if (const auto refused = impl_->source ? impl_->source->unstopped() : std::nullopt) {

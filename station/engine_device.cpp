@@ -72,6 +72,16 @@ void Engine::Impl::change_settings() {
   }
 }
 
+void Engine::Impl::tell_unset() {
+  const bool any = [&] {
+    const std::scoped_lock lock(mutex);
+    return !settings_asked.empty();
+  }();
+  if (any) {
+    emit(Notice{kNotSet});
+  }
+}
+
 void Engine::Impl::end_view() {
   if (stream) {
     stream.reset();

@@ -253,6 +253,7 @@ struct Engine::Impl {
   // engine_device.cpp
   Status open_settings();  ///< puts what the session keeps and what the options say, and tells the panel
   void change_settings();  ///< those that were asked for; of the acquiring thread
+  void tell_unset();       ///< likewise, where there is no device or no session for them
   bool show_camera();      ///< a frame, where one is asked for; false when none is
   void end_view();         ///< no frame is shown any more
   void tell_panel();

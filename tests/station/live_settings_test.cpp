@@ -134,6 +134,23 @@ TEST_F(LiveSettings, OneThatIsKeptAndFailsKeepsNoOtherFromBeingPut) {
                           HasSubstr("setting light takes one of on, off")));
 }
 
+TEST_F(LiveSettings, WhatIsSetWhileADeviceIsOpenedInVainIsSaidNotToBeSet) {
+  EngineOptions options;
+  options.device = "odd:gone";
+  options.session = session_;
+  std::string said;
+  Engine engine(options, [&](const Event& event) {
+    if (const auto* notice = std::get_if<Notice>(&event)) {
+      said += notice->text + "\n";
+    }
+  });
+  ASSERT_TRUE(engine.post(ChangeSetting{"gain", "3"}));
+  JobContext job;
+  const Result<EngineResult> result = engine.run(job);
+  EXPECT_FALSE(result);
+  EXPECT_THAT(said, HasSubstr(kNotSet));
+}
+
 /// One of them may be the power of a camera's own laser.
 TEST_F(LiveSettings, BehindAnEmergencyStopNoneIsPutAndAllAreKept) {
   keep("odd:1", {{"gain", "2"}});
