@@ -33,8 +33,11 @@ void LiveSession::watch_camera(bool on) {
       watch_->stop();
     } else if (on && !watch_ && (!busy_ || unasked_) && !options_.device.empty()) {
       watch_ = std::make_shared<CameraWatch>(
-          options_.device, [this] { return known_settings(); }, [this](const Event& event) { hear(event); },
-          [this](const std::string& key, const std::string& word) { keep_setting(key, word); });
+          options_.device, [this, device = options_.device] { return known_settings(device); },
+          [this](const Event& event) { hear(event); },
+          [this, device = options_.device](const std::string& key, const std::string& word) {
+            keep_setting(device, key, word);  // whatever scanner is chosen by then
+          });
     }
   }
 }
@@ -77,14 +80,12 @@ void LiveSession::tell_device() {
   device_told_ = device_told_.value_or(std::chrono::steady_clock::now());
 }
 
-SettingWords LiveSession::known_settings() {
-  std::string device;
+SettingWords LiveSession::known_settings(const std::string& device) {
   {
     const std::scoped_lock lock(mutex_);
-    if (settings_) {
+    if (settings_ && device == options_.device) {
       return *settings_;
     }
-    device = options_.device;
   }
   SettingWords kept;
   if (SessionStore::is_session(options_.session)) {
@@ -100,14 +101,14 @@ SettingWords LiveSession::known_settings() {
   return kept;
 }
 
-void LiveSession::keep_setting(const std::string& key, const std::string& word) {
-  SettingWords all = known_settings();
-  std::string device;
+void LiveSession::keep_setting(const std::string& device, const std::string& key, const std::string& word) {
+  SettingWords all = known_settings(device);
+  put_word(all, key, word);
   {
     const std::scoped_lock lock(mutex_);
-    put_word(all, key, word);
-    settings_ = all;
-    device = options_.device;
+    if (device == options_.device) {
+      settings_ = all;
+    }
   }
   // Without a session it is put, and kept, by the first run.
   if (SessionStore::is_session(options_.session)) {

@@ -160,8 +160,8 @@ class LiveSession {
   void show_model(std::shared_ptr<const Mesh> mesh, std::shared_ptr<const ColouredPoints> red,
                   const RigidTransform& tablet_from_model);
   void look_after_rig();
-  [[nodiscard]] SettingWords known_settings();
-  void keep_setting(const std::string& key, const std::string& word);
+  [[nodiscard]] SettingWords known_settings(const std::string& device);
+  void keep_setting(const std::string& device, const std::string& key, const std::string& word);
   void end(const Status& status);  ///< of a job
   void changed() const;
 

@@ -69,6 +69,21 @@ TEST_F(LiveSettings, AScannerThatIsChosenAgainHasWhatIsKeptOfIt) {
   EXPECT_THAT(kept("odd:2"), ElementsAre(Pair("average", "2")));
 }
 
+TEST_F(LiveSettings, WhatIsSetOfAScannerIsKeptOfItAlsoWhereAnotherIsChosenMeanwhile) {
+  keep("odd:2", {});
+  keep("odd:1", {});
+  Followed followed("odd:1", session_);
+  followed.session.watch_camera(true);
+  ASSERT_TRUE(followed.wait_until([](const LiveState& s) { return s.panel != nullptr; }));
+  followed.session.change_setting("gain", "3");
+  followed.session.set_device("odd:2");  // before the first has taken it
+  ASSERT_TRUE(followed.wait_until(
+      [&](const LiveState&) { return !kept("odd:1").empty() || !kept("odd:2").empty(); }));
+  followed.session.watch_camera(false);
+  EXPECT_THAT(kept("odd:1"), ElementsAre(Pair("gain", "3")));
+  EXPECT_THAT(kept("odd:2"), ElementsAre());
+}
+
 TEST_F(LiveSettings, WhatNobodyTakesIsSaid) {
   Followed followed("odd:1", session_);
   followed.session.change_setting("gain", "3");
