@@ -162,7 +162,11 @@ TEST(MeshBodies, AWedgeThatAPersonAddsIsMeasuredByTheNoiseOfItsOwnBody) {
   const Analysed both(together(one, rough));
   ASSERT_EQ(both.fields.body_count(), 2U);
   std::size_t compared = 0;
-  for (const Wedge& wedge : alone.corrected({}).wedges) {
+  const WedgeSet found = alone.corrected({});
+  for (const Wedge& wedge : found.wedges) {
+    if (compared == 5) {
+      break;
+    }
     WedgeCorrection gone;
     gone.at_mm = {wedge.depth_point_mm};
     WedgeCorrection added;
@@ -170,7 +174,7 @@ TEST(MeshBodies, AWedgeThatAPersonAddsIsMeasuredByTheNoiseOfItsOwnBody) {
     added.region_mm = gone.at_mm;
     added.reach_mm = 1.0;
     const WedgeSet right = alone.corrected({gone, added});
-    if (!right.lost.empty() || compared == 5) {
+    if (!right.lost.empty()) {
       continue;
     }
     ++compared;

@@ -300,7 +300,8 @@ TEST(WedgeCorrections, ASplitSaysOfAPlaceInThePartOfAnotherThatItLiesThere) {
     WedgeCorrection split = delete_of({wedge.id});
     split.kind = CorrectionKind::kSplit;
     split.into_mm = {wedge.depth_point_mm, wedge.depth_point_mm};
-    for (const LostCorrection& lost : corrected({split}).lost) {
+    const WedgeSet set = corrected({split});
+    for (const LostCorrection& lost : set.lost) {
       reasons.insert(lost.reason);
     }
     if (reasons.size() > 2) {
