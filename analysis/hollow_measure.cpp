@@ -102,14 +102,18 @@ bool is_noisy(double noise_mm, const std::vector<float>& areas) {
 
 HollowMeasure::HollowMeasure(const Mesh& mesh, const VertexGraph& graph, const SurfaceFields& fields,
                              const WedgeOptions& options, const std::vector<float>& areas, bool noisy)
-    : mesh_(mesh), fields_(fields), options_(options), areas_(areas), source_{&graph,
-                                                                              mesh.faces,
-                                                                              areas,
-                                                                              mesh.positions,
-                                                                              fields.normal,
-                                                                              fields.reliability,
-                                                                              fields.height_mm,
-                                                                              noisy} {}
+    : mesh_(mesh),
+      fields_(fields),
+      options_(options),
+      areas_(areas),
+      source_{.graph = &graph,
+              .faces = mesh.faces,
+              .area_mm2 = areas,
+              .position = mesh.positions,
+              .normal = fields.normal,
+              .reliability = fields.reliability,
+              .height_mm = fields.height_mm,
+              .noisy = noisy} {}
 
 std::size_t HollowMeasure::least_vertices() const {
   return static_cast<std::size_t>(std::max(options_.judge.least_vertices, 1));

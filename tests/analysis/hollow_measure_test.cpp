@@ -27,7 +27,7 @@ struct Hollow {
 
   [[nodiscard]] Wedge measured(const std::vector<std::uint32_t>& in_order,
                                const WedgeOptions& options) const {
-    const HollowMeasure measure(mesh, graph, fields, options, areas, 0);
+    const HollowMeasure measure(mesh, graph, fields, options, areas, false);
     std::vector<std::int32_t> slot(mesh.positions.size(), -1);
     const auto found = measure.measure(in_order, &slot);
     EXPECT_TRUE(found) << found.error();
@@ -143,7 +143,7 @@ TEST(HollowMeasure, DepthIsBelowTheSideThatAHoleIsIn) {
     }
   }
   std::ranges::stable_sort(shaft.vertices, {}, [&](std::uint32_t v) { return shaft.fields.height_mm[v]; });
-  const HollowMeasure measure(shaft.mesh, shaft.graph, shaft.fields, {}, shaft.areas, 0);
+  const HollowMeasure measure(shaft.mesh, shaft.graph, shaft.fields, {}, shaft.areas, false);
   std::vector<std::int32_t> slot(shaft.mesh.positions.size(), -1);
   const auto found = measure.measure(shaft.vertices, &slot);
   ASSERT_TRUE(found) << found.error();
@@ -175,7 +175,7 @@ TEST(HollowMeasure, WhatIsLeftOfABasinAfterFourLooksIsSaid) {
   }
   std::ranges::stable_sort(h.vertices, {}, [&](std::uint32_t v) { return h.fields.height_mm[v]; });
   const WedgeOptions options;
-  const HollowMeasure measure(h.mesh, h.graph, h.fields, options, h.areas, 0);
+  const HollowMeasure measure(h.mesh, h.graph, h.fields, options, h.areas, false);
   std::vector<std::int32_t> slot(h.mesh.positions.size(), -1);
   const std::vector<WedgeCandidate> found = measure.look_at(h.vertices, &slot);
   ASSERT_EQ(found.size(), 6U);

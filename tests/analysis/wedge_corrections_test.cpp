@@ -154,7 +154,7 @@ TEST(WedgeCorrections, AMissedWedgeIsMeasuredAsItWouldHaveBeen) {
   EXPECT_GT(vertices_of(set, added.id).size(), 0.8 * before.vertex_count);
 }
 
-TEST(WedgeCorrections, AreJudgedBesideTheWedgesOfTheirOwnBody) {
+TEST(WedgeCorrections, GoByTheirOwnBodyAlone) {
   const int id = lone_wedge();
   ASSERT_GE(id, 0);
   const std::vector<std::uint32_t> its = vertices_of(found().set, id);
@@ -166,22 +166,28 @@ TEST(WedgeCorrections, AreJudgedBesideTheWedgesOfTheirOwnBody) {
   }
   const Eigen::Vector3d place = wedge_of_id(found().set, id)->depth_point_mm;
   WedgeFindings findings = found().findings;
+  ASSERT_EQ(findings.is_noisy.front(), 0);
+  findings.is_noisy.push_back(0);
   for (WedgeCandidate& c : findings.candidates) {
     c.wedge.place.body = c.wedge.depth_point_mm == place ? 2 : 1;
   }
   WedgeFindings alone = findings;
   std::erase_if(alone.candidates, [](const WedgeCandidate& c) { return c.wedge.place.body == 1; });
   ASSERT_EQ(alone.candidates.size(), 1U);
+  findings.is_noisy.front() = 1;  // of the other
   WedgeOptions options;
   options.corrections = {delete_of({id}), add_at(its)};
   const auto added = [&](const WedgeFindings& of) {
     const WedgeSet set = settle_wedges(found().mesh, found().graph, fields, options, of);
     EXPECT_THAT(set.lost, IsEmpty());
     const auto at = std::ranges::find(set.wedges, ByHand::kAdded, &Wedge::by_hand);
-    return at == set.wedges.end() ? -1.0 : at->confidence;
+    return at == set.wedges.end() ? Wedge() : *at;
   };
-  EXPECT_GT(added(alone), 0);
-  EXPECT_EQ(added(findings), added(alone)) << "what lies on another body says nothing of it";
+  const Wedge expected = added(alone);
+  const Wedge beside = added(findings);
+  EXPECT_GT(expected.confidence, 0);
+  EXPECT_EQ(beside.confidence, expected.confidence) << "what lies on another body says nothing of it";
+  EXPECT_EQ(beside.depth_point_mm, expected.depth_point_mm) << "nor does the noise there";
 }
 
 TEST(WedgeCorrections, JudgeTheirOwnWedgeAloneAsItWouldBeAmongAll) {
