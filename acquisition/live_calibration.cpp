@@ -28,6 +28,7 @@ namespace fs = std::filesystem;
 
 constexpr double kMovedPx = 0.5;  // corners of a board that was held still stay within this
 constexpr int kLeastStops = 3;
+constexpr double kRunUp = 0.05;         // of the stage's way, before its first stop
 constexpr std::size_t kFirstPoses = 4;  // before a camera can be told at all
 
 /// How far the corners that both have lie apart, the median; nothing without such corners.
@@ -94,6 +95,7 @@ Result<LiveCalibration> LiveCalibration::start(const LiveCalibrationPlan& given,
   way.start = plan.from;
   way.step = plan.to - plan.from;
   way.rows = 2;
+  double before = plan.from;
   if (plan.set.motion) {
     const Result<StageAxis> axis = axis_for_scan(way, stage, *plan.set.motion, stage.uri());
     if (!axis) {
@@ -103,6 +105,8 @@ Result<LiveCalibration> LiveCalibration::start(const LiveCalibrationPlan& given,
       plan.from = std::clamp(plan.from, axis->minimum, axis->maximum);
       plan.to = std::clamp(plan.to, axis->minimum, axis->maximum);
     }
+    before = plan.from - kRunUp * (plan.to - plan.from);
+    before = axis->endless ? before : std::max(before, axis->minimum);
     if (Status zero = check_zero(*axis, stage, *plan.set.motion, stage.uri()); !zero) {
       return std::unexpected(zero.error());
     }
@@ -125,6 +129,7 @@ Result<LiveCalibration> LiveCalibration::start(const LiveCalibrationPlan& given,
     return std::unexpected(made.error());
   }
   LiveCalibration out(std::move(plan), *board, std::move(camera), std::move(stage));
+  out.before_ = before;
   const fs::path list = out.plan_.folder / "calibration.toml";
   if (std::error_code ignored; !fs::exists(list, ignored)) {
     return out;
@@ -287,6 +292,9 @@ Result<LiveCalibration::Taken> LiveCalibration::stops_while_streaming(const JobC
   std::vector<CalibrationSet::Stop> stops;
   std::vector<GrayImage> pictures;
   std::size_t free = plan_.set.stops.size();
+  if (Status moved = stage_.move({axis, before_, plan_.speed, false}); !moved) {
+    return std::unexpected(moved.error());
+  }
   for (int i = 0; i < plan_.stops; ++i) {
     job.progress("stage", static_cast<double>(i) / plan_.stops);
     const double share = static_cast<double>(i) / std::max(1, plan_.stops - 1);

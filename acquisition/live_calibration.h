@@ -73,6 +73,7 @@ class LiveCalibration {
 
   LiveCalibrationPlan plan_;
   BoardSpec board_;
+  double before_ = 0;  ///< from there its first stop is driven to, as the others are: a screw has some play
   Device camera_;
   Device stage_;
   std::vector<CalibrationView> views_;

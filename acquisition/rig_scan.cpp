@@ -161,6 +161,14 @@ Status RigScanner::check_frame(const Frame& frame) const {
   return {};
 }
 
+Status RigScanner::approach() {
+  const double from = travel_of(file_, axis_, 0).from;
+  const Status may = unless_stopped(*stopped_, file_);
+  return may && from < file_.start
+             ? stage_.move({static_cast<std::uint32_t>(file_.axis), from, file_.speed, false})
+             : may;
+}
+
 Status RigScanner::row(int number, ProfileSink& sink, ScanTally& tally) {
   const double position = row_position(file_, axis_, number);
   const auto laser = static_cast<std::uint32_t>(file_.laser);
@@ -266,6 +274,9 @@ Status RigScanner::scan(ProfileSink& sink) {
   began_ns_ = wall_clock_ns();
   pitch_.emplace(file_.step, plan->speed, triangulator_->calibration().motion.kind != MotionKind::kLinear);
   Status status = file_.continuous ? sweep(*plan, sink, tally) : begin(sink, tally);
+  if (status && !file_.continuous) {
+    status = approach();
+  }
   for (int number = 0; status && !file_.continuous && number < file_.rows; ++number) {
     status = unless_stopped(*stopped_, file_);
     status = status ? row(number, sink, tally) : status;

@@ -56,6 +56,8 @@ class RigScanner : public RigSource {
   RigScanner(const RigFile& file, const RigCalibration& calibration, Device camera, Device stage,
              StripeAxis axis);
   [[nodiscard]] Status check_frame(const Frame& frame) const;
+  /// Before row 0, which is then driven to from the side that all rows are: a screw has some play.
+  Status approach();
   Status row(int number, ProfileSink& sink, ScanTally& tally);
   [[nodiscard]] Result<Travel> plan_sweep();
   Status sweep(const Travel& plan, ProfileSink& sink, ScanTally& tally);

@@ -273,6 +273,8 @@ TEST_F(Live, TheStageGoesAsFastAsTheRigSays) {
   carried_ = true;
   ASSERT_TRUE(slide->take_stops(JobContext{}).has_value());
   EXPECT_EQ(bench_.speed, 1.5);
+  ASSERT_EQ(bench_.sent.size(), 5U);
+  EXPECT_LT(bench_.sent[0], plan_.from) << "its first stop too is driven to from below";
   bench_.truth.motion.kind = MotionKind::kGalvanometer;
   bench_.speed = 0;
   plan_.set.motion = MotionKind::kGalvanometer;

@@ -43,6 +43,7 @@ struct RigBench {
   bool mute = false;           ///< tells of no axis
   bool can_home = false;
   double speed = 0;               ///< that the last move was asked for
+  std::vector<double> sent;       ///< where it was sent
   double whole_step = 0;          ///< between which it cannot stand; 0: anywhere
   bool burns_on = false;          ///< the controller obeys no more once its laser is lit
   bool lights_unsaid = false;     ///< it lights its laser and does not answer
@@ -239,6 +240,7 @@ inline const dubsar_driver& stage_driver() {
     out.home = [](dubsar_device*, dubsar_error*) -> std::int32_t { return DUBSAR_OK; };
     out.move = [](dubsar_device* device, const dubsar_move* move, dubsar_error*) -> std::int32_t {
       RigBench& bench = bench_of(device);
+      bench.sent.push_back(move->position);
       if (bench.far) {
         while (bench.far) {
           std::this_thread::sleep_for(std::chrono::milliseconds(1));

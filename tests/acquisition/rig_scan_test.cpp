@@ -211,6 +211,28 @@ TEST_F(RigScan, RefusesPartsThatDoNotFit) {
   EXPECT_NE(swapped.error().what.find("no camera"), std::string::npos);
 }
 
+/// A screw's play would set row 0 apart that is come to from above, as from the last row of the scan before.
+TEST_F(RigScan, ComesToItsFirstRowFromBelow) {
+  file.rows = 3;
+  file.ambient = false;
+  Result<RigScanner> made = make();
+  ASSERT_TRUE(made.has_value()) << made.error().line();
+  Collect sink;
+  ASSERT_TRUE(made->scan(sink).has_value());
+  ASSERT_EQ(bench.sent.size(), 4U);
+  EXPECT_NEAR(bench.sent[0], -1.5, 1e-9);
+  EXPECT_EQ(bench.sent[1], -0.5);
+  // Where its limit leaves no room it goes straight there.
+  bench.limit = 0.5;
+  bench.sent.clear();
+  Result<RigScanner> narrow = make();
+  ASSERT_TRUE(narrow.has_value()) << narrow.error().line();
+  Collect again;
+  ASSERT_TRUE(narrow->scan(again).has_value());
+  EXPECT_EQ(bench.sent[0], -0.5);
+  EXPECT_EQ(bench.sent.size(), 3U);
+}
+
 /// Three steps of 0.1 mm are a rounding more than 0.3 mm.
 TEST_F(RigScan, GoesToTheVeryEndOfItsAxis) {
   bench.limit = 0.3;
