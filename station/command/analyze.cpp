@@ -8,9 +8,11 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "acquisition/session_store.h"
+#include "analysis/field_colours.h"
 #include "archive/wedge_drawing.h"
 #include "core/log.h"
 #include "core/stage_times.h"
@@ -80,6 +82,25 @@ Status write_extras(const AnalyzeArguments& arguments, const Mesh& mesh, const A
                             analysis.fields, {.radius_mm = arguments.radius_mm}, lines, label, job);
   }
   return {};
+}
+
+/// Those in the folder of the pictures have names of their own, which a mesh in that folder may have, too.
+Status check_files_apart(const AnalyzeArguments& arguments) {
+  if (arguments.pictures.empty()) {
+    return {};
+  }
+  std::vector<std::string> names{"surface", "wedges"};
+  for (const SurfaceField field : kSurfaceFields) {
+    names.emplace_back(field_name(field));
+  }
+  if (!arguments.invariants.empty()) {
+    names.emplace_back("invariants");
+  }
+  std::vector<std::string> files{arguments.out, arguments.mesh_out, arguments.invariants};
+  for (const std::string& name : names) {
+    files.push_back((std::filesystem::path(arguments.pictures) / (name + ".ply")).string());
+  }
+  return check_apart(files, {arguments.in});
 }
 
 /// Stamped work needs files that can be read again: nothing is remembered of a pipe.
@@ -232,6 +253,9 @@ Result<int> analyze(const AnalyzeArguments& arguments, CommandContext& context) 
   if (const Status named = arguments.mesh_out.empty() ? Status() : check_mesh_name(arguments.mesh_out);
       !named) {
     return std::unexpected(named.error());
+  }
+  if (const Status apart = check_files_apart(arguments); !apart) {
+    return std::unexpected(apart.error());
   }
   const std::filesystem::path corrections_file = corrections_of(arguments);
   Result<CorrectionFile> said = read_corrections(corrections_file);

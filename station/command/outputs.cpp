@@ -28,23 +28,6 @@ bool is_same_place(const std::string& a, const std::string& b) {
   return resolved_place(a) == resolved_place(b);
 }
 
-Status check_apart(const std::vector<std::string>& outputs, const std::vector<std::string>& inputs) {
-  for (auto output = outputs.begin(); output != outputs.end(); ++output) {
-    const auto is_this = [&](const std::string& other) {
-      return !output->empty() && !other.empty() && is_same_place(*output, other);
-    };
-    if (std::any_of(inputs.begin(), inputs.end(), is_this)) {
-      return fail(ErrorKind::kUsage, "what is read would be written over", *output,
-                  "give the output a name of its own");
-    }
-    if (std::any_of(outputs.begin(), output, is_this)) {
-      return fail(ErrorKind::kUsage, "two outputs would be written to one place", *output,
-                  "give each a name of its own");
-    }
-  }
-  return {};
-}
-
 /// A name that is mistyped makes no folder.
 Status check_folder_of(const std::string& output) {
   const fs::path file = output;
@@ -84,6 +67,23 @@ std::string from_folder_of(const std::string& path, const std::string& output) {
 
 std::string as_folder(const std::string& path) {
   return path.empty() ? path : (fs::path(path) / "").string();
+}
+
+Status check_apart(const std::vector<std::string>& outputs, const std::vector<std::string>& inputs) {
+  for (auto output = outputs.begin(); output != outputs.end(); ++output) {
+    const auto is_this = [&](const std::string& other) {
+      return !output->empty() && !other.empty() && is_same_place(*output, other);
+    };
+    if (std::any_of(inputs.begin(), inputs.end(), is_this)) {
+      return fail(ErrorKind::kUsage, "what is read would be written over", *output,
+                  "give the output a name of its own");
+    }
+    if (std::any_of(outputs.begin(), output, is_this)) {
+      return fail(ErrorKind::kUsage, "two outputs would be written to one place", *output,
+                  "give each a name of its own");
+    }
+  }
+  return {};
 }
 
 Action with_safe_outputs(std::vector<std::string> outputs, Action action, std::vector<std::string> inputs) {

@@ -18,6 +18,11 @@ namespace dubsar {
 [[nodiscard]] Action with_safe_outputs(std::vector<std::string> outputs, Action action,
                                        std::vector<std::string> inputs = {});
 
+/// Errors: kUsage where one of the outputs is an input, or two are the same place. Empty paths are passed
+/// over; links are followed.
+[[nodiscard]] Status check_apart(const std::vector<std::string>& outputs,
+                                 const std::vector<std::string>& inputs);
+
 /// Where a file lies, from the folder of an output: both may move together. Empty for none.
 [[nodiscard]] std::string from_folder_of(const std::string& path, const std::string& output);
 

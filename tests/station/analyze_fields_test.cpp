@@ -124,6 +124,26 @@ TEST_F(AnalyzeFields, PicturesAndInvariantsSayWhatTheyAreOf) {
   EXPECT_EQ(read_file_label(obj).words, label.words) << "and what is made of them";
 }
 
+TEST_F(AnalyzeFields, PicturesAreNotWrittenOverAMesh) {
+  const std::string mesh = sphere_file("surface.ply", 15, 3);
+  const std::string before = read_whole_file(mesh).value_or("");
+  const auto told = [&](const std::string& pictures, const std::vector<std::string>& more) {
+    test::Arguments words{"analyze", mesh, "-o", at("w.json").string(), "--pictures", pictures};
+    words.insert(words.end(), more.begin(), more.end());
+    const Outcome outcome = run_command(words);
+    EXPECT_EQ(outcome.status, 2);
+    return outcome.err;
+  };
+  EXPECT_THAT(told(fs::path(mesh).parent_path().string(), {}),
+              HasSubstr("what is read would be written over"));
+  EXPECT_EQ(read_whole_file(mesh).value_or(""), before);
+  const fs::path folder = at("fields");
+  fs::create_directory(folder);
+  EXPECT_THAT(told(folder.string(), {"--mesh-out", (folder / "wedges.ply").string()}),
+              HasSubstr("two outputs would be written to one place"));
+  EXPECT_FALSE(fs::exists(at("w.json")));
+}
+
 /// The values of each line, as text; the lines are numbered in their order.
 std::vector<std::string> values_of(const fs::path& mat) {
   std::vector<std::string> out;
