@@ -405,7 +405,7 @@ TEST(EngineCommands, PinsThatAreLabelledWhileAScanWaitsToBePlacedAreNoClayOfIt) 
   labelled.set_value();
   runs.join();
   ASSERT_TRUE(*result) << result->error().line();
-  EXPECT_EQ(tip_mm, 1.5);
+  EXPECT_EQ(tip_mm.load(), 1.5);
 }
 
 TEST(EngineCommands, TheDiameterOfTheFileHoldsAgainOnceAllLabelsAreTakenBack) {
