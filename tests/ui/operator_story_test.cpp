@@ -152,6 +152,14 @@ TEST_F(OperatorStory, FromTheFirstKeyToASignedConclusiveTablet) {
   EXPECT_EQ(run_command({"plan", session(), "--json"}).json()["conclusive"], true);
 }
 
+TEST_F(OperatorStory, WhatIsTypedOfTheTabletIsKeptWhereTheWindowIsClosedBeforeItsLineIsLeft) {
+  const Outcome typed = play("wait idle\nclick tablet\nclick museum-number\ntype VAT 7\npause 0.5\nquit\n");
+  ASSERT_EQ(typed.status, 0) << typed.err;
+  const Result<SessionStore> store = SessionStore::open(session(), SessionStore::Access::kReadOnly);
+  ASSERT_TRUE(store) << store.error().line();
+  EXPECT_EQ(tablet_record_of(*store).museum_number, "VAT 7");
+}
+
 TEST_F(OperatorStory, WhatIsSaidOfTheTabletIsKeptAndAClosedWindowGoesOn) {
   const Outcome first = play(R"(
 wait idle

@@ -86,11 +86,28 @@ void OperatorScreen::draw_settings(UiContext& ui) {
   ImGui::EndPopup();
 }
 
+OperatorScreen::~OperatorScreen() {
+  if (types_record_) {
+    say_record(false);
+  }
+}
+
+void OperatorScreen::say_record(bool anyway) {
+  types_record_ = false;
+  TabletRecord said = record_;
+  said.cdli = check_cdli(record_.cdli).has_value() ? record_.cdli : said_record_.cdli;
+  if (!(said == said_record_) || anyway) {
+    session_.describe(said);
+    said_record_ = said;
+  }
+}
+
 void OperatorScreen::draw_tablet(UiContext& ui) {
   if (!begin_box(ui, ui.text(Text::kTablet), "###tablet", open_tablet_, ui.px(32))) {
     return;
   }
-  // What is typed is kept when its line is left: a window that is killed meanwhile takes nothing with it.
+  // What is typed is kept when its line is left: a window that is killed meanwhile takes nothing with it. One
+  // that is closed says it then.
   bool left_line = false;
   // Lines that letters make too high are scrolled through; what ends the box is always in sight.
   const float line_high = ImGui::GetTextLineHeightWithSpacing() + ImGui::GetFrameHeightWithSpacing();
@@ -102,7 +119,7 @@ void OperatorScreen::draw_tablet(UiContext& ui) {
     ImGui::BeginChild("lines", {0, most});
   }
   const auto line = [&](const char* name, Text label, std::string& value) {
-    text_line(ui, name, ui.text(label), value);
+    types_record_ = text_line(ui, name, ui.text(label), value) || types_record_;
     left_line = left_line || ImGui::IsItemDeactivatedAfterEdit();
   };
   line("museum-number", Text::kMuseumNumber, record_.museum_number);
@@ -131,13 +148,8 @@ void OperatorScreen::draw_tablet(UiContext& ui) {
                                  cdli_good && may_leave()) ||
                     (cdli_good && may_leave() && !ImGui::GetIO().WantTextInput && any_pressed({GLFW_KEY_N}));
   if (close || next || left_line) {
-    TabletRecord said = record_;
-    said.cdli = cdli_good ? record_.cdli : said_record_.cdli;
-    ui.preferences.operator_name = said.operator_name;
-    if (!(said == said_record_) || (close && !state_.record_kept)) {
-      session_.describe(said);
-      said_record_ = said;
-    }
+    ui.preferences.operator_name = record_.operator_name;
+    say_record(close && !state_.record_kept);
   }
   if (next) {
     open_next();

@@ -35,6 +35,10 @@ namespace dubsar::ui {
 class OperatorScreen {
  public:
   explicit OperatorScreen(LiveSession& session);
+  /// What stands typed of the tablet, in a line that was not left yet, is said to the session.
+  ~OperatorScreen();
+  OperatorScreen(const OperatorScreen&) = delete;
+  OperatorScreen& operator=(const OperatorScreen&) = delete;
 
   /// Draws itself over the whole of the window.
   void draw(UiContext& ui, ImVec2 size);
@@ -78,6 +82,8 @@ class OperatorScreen {
   void draw_scan_menu(UiContext& ui, const LiveScan& scan);
   void draw_settings(UiContext& ui);
   void draw_tablet(UiContext& ui);
+  /// Where it is another than was said last, or `anyway`.
+  void say_record(bool anyway);
   /// What a box is for, and of which tablet: its number, or where it is kept.
   [[nodiscard]] std::string title_of(const UiContext& ui, Text what) const;
   void draw_excused(UiContext& ui);
@@ -124,6 +130,7 @@ class OperatorScreen {
   TabletRecord record_;
   TabletRecord said_record_;  ///< to the session
   bool record_taken_ = false;
+  bool types_record_ = false;  ///< in a line that is not left yet
   std::string sign_name_, sign_role_, sign_incomplete_;
   bool sign_too_early_ = false;  ///< enter was pressed while a line lacked
   std::string package_folder_, next_folder_;
