@@ -33,6 +33,9 @@ LiveSession::~LiveSession() {
     closing_ = true;
     looking_.cancel();
     cancel();
+    if (watch_) {
+      watch_->stop();
+    }
   }
   std::optional<DevicePatience> patience;
   if (options_.given_up) {
@@ -41,9 +44,9 @@ LiveSession::~LiveSession() {
   if (worker_.joinable()) {
     worker_.join();
   }
+  watch_.reset();  // a rig's laser is lit for it, and a session is opened for minutes
   keep_words();
   keeps_refused_record();  // what refused it may have let go of the session
-  watch_.reset();
 }
 
 GrowingRows LiveSession::look_at_growing(std::uint64_t scan, int known) {

@@ -3,7 +3,12 @@
 // What is said of the tablet where the session cannot be written to.
 #include <gtest/gtest.h>
 
+#include <atomic>
+#include <memory>
 #include <optional>
+#include <string>
+#include <thread>
+#include <vector>
 
 #include "acquisition/session_store.h"
 #include "tests/station/support/followed_session.h"
@@ -57,6 +62,34 @@ TEST_F(LiveRecord, ThatWasRefusedIsKeptAtTheLatestWhenItsWindowIsShut) {
     ASSERT_FALSE(followed.session.state().record_kept);
     another.reset();
   }
+  EXPECT_EQ(kept_number(), "BM 15285");
+}
+
+/// A rig's laser is lit for whoever looks, and to be written to a large session is opened for minutes.
+TEST_F(LiveRecord, ThatIsKeptWhenItsWindowIsShutIsKeptAfterTheCameraIsClosed) {
+  std::optional<SessionStore> another = SessionStore::open_or_create(session()).value();
+  std::atomic<bool> shuts = false;
+  std::vector<std::string> kept;  // as the camera is closed
+  auto window =
+      std::make_unique<LiveSession>(LiveSession::Options{kSmallTablet, session(), std::nullopt}, [&] {
+        if (shuts) {
+          kept.push_back(kept_number());
+        }
+      });
+  window->describe(bm_15285());
+  while (window->busy()) {
+    std::this_thread::yield();
+  }
+  ASSERT_FALSE(window->state().record_kept);
+  window->watch_camera(true);
+  while (!window->state().panel) {
+    std::this_thread::yield();
+  }
+  another.reset();
+  shuts = true;
+  window.reset();
+  ASSERT_FALSE(kept.empty());
+  EXPECT_EQ(kept.back(), "");
   EXPECT_EQ(kept_number(), "BM 15285");
 }
 
