@@ -121,27 +121,34 @@ struct Stitcher::Impl {
     erase_entries(id);
   }
 
-  /// Pairs the new pass with those that its box touches. False when cancelled: then nothing has changed.
+  /// Pairs the new pass with those that its box touches, several side by side: much of what is done for one
+  /// of them, above all the fit of the step between both, is work for a single thread. False when cancelled:
+  /// then nothing has changed.
   bool pair(const PassKey& key, const JobContext& job) {
-    std::vector<FoundPairs> all;
     Entry& entry = entries.at(key);
-    for (auto& [other_key, other] : entries) {
-      if (other_key == key || unpaired.contains(other_key)) {
-        continue;
-      }
-      if (job.cancelled()) {
-        return false;
-      }
-      std::optional<FoundPairs> found =
-          pairs_between(key, entry.surface, other_key, other.surface, options.pairing, job);
-      if (found) {
-        all.push_back(std::move(*found));
+    std::vector<std::pair<PassKey, const StitchSurface*>> others;
+    for (const auto& [other_key, other] : entries) {
+      if (other_key != key && !unpaired.contains(other_key)) {
+        others.emplace_back(other_key, &other.surface);
       }
     }
+    std::vector<std::optional<FoundPairs>> all(others.size());
+    parallel_for_each_index(
+        others.size(),
+        [&](std::size_t k) {
+          if (const auto& [other_key, other] = others[k]; !job.cancelled()) {
+            all[k] = pairs_between(key, entry.surface, other_key, *other, options.pairing, job);
+          }
+        },
+        1);
     if (job.cancelled()) {
       return false;
     }
-    for (FoundPairs& pairs : all) {
+    for (std::optional<FoundPairs>& found : all) {
+      if (!found) {
+        continue;
+      }
+      FoundPairs& pairs = *found;
       Entry& other = entries.at(pairs.other);
       other.mark_changed(pairs.back);
       if (pairs.other.first != key.first) {  // passes of one scan are held by each other, not by a pose
