@@ -75,7 +75,11 @@ class Averager {
  public:
   Averager(const StitchSurface& from, std::span<const StitchSurface* const> others,
            std::span<const Pairs* const> pairs)
-      : from_(from), others_(others), pairs_(pairs), node_(from.lattice.size()) {}
+      : from_(from),
+        others_(others),
+        pairs_(pairs),
+        own_pose_variance_mm2_(from.pose_variance_mm2()),
+        node_(from.lattice.size()) {}
 
   /// The sample out.samples[at], into the other arrays of `out`.
   void average(std::size_t at, FusedSamples& out);
@@ -86,18 +90,28 @@ class Averager {
     std::size_t sample = 0;
     Vector3f normal;
     Line line;
-    float tilt = 1;  ///< × a distance along the line: the distance along the normal
+    float tilt = 1;    ///< × a distance along the line: the distance along the normal
+    float weight = 0;  ///< of the sample itself in the average
+  };
+  /// One of the others around a node: where to look from there, and what is the same for all that is found.
+  struct Start {
+    std::size_t other = 0;
+    PairStart pair;
+    float feather = 0;
+    float pose_variance_mm2 = 0;
+  };
+  /// Where the line meets one of the others.
+  struct Found {
+    std::size_t other = 0;
+    float weight = 0;    ///< in the average
+    float variance = 0;  ///< of the place along the normal
+    Projection at;
   };
 
   void enter(std::size_t node);
   [[nodiscard]] Projection meeting(const Course& course, const PairStart& start, std::size_t other) const;
-  /// In the average.
   [[nodiscard]] float own_weight(std::size_t sample) const {
     return from_.weight(sample) * from_.pose_share * faded(from_.rim[sample], feather_);
-  }
-  [[nodiscard]] float weight_of(std::size_t other, const Projection& q) const {
-    const StitchSurface& on = *others_[other];
-    return q.weight * on.pose_share * faded(q.rim, feather_between(from_, on, *pairs_[other]));
   }
   void write_average(const Course& course, std::size_t at, FusedSamples& out) const;
   [[nodiscard]] float moved2_mm2(const Course& course, float weight_sum) const;
@@ -106,11 +120,11 @@ class Averager {
   const StitchSurface& from_;
   std::span<const StitchSurface* const> others_;
   std::span<const Pairs* const> pairs_;  ///< with each of the others
+  float own_pose_variance_mm2_;
   std::size_t node_;
-  std::vector<std::pair<std::size_t, PairStart>>
-      starts_;         ///< which of the others, where to look from the node
-  float feather_ = 0;  ///< the widest of those with them
-  std::vector<std::pair<std::size_t, Projection>> found_;  ///< which of the others, where the line meets it
+  std::vector<Start> starts_;  ///< of the node
+  float feather_ = 0;          ///< the widest of those with them
+  std::vector<Found> found_;   ///< of the sample
 };
 
 void Averager::enter(std::size_t node) {
@@ -119,8 +133,9 @@ void Averager::enter(std::size_t node) {
   feather_ = 0;
   for (std::size_t k = 0; k < others_.size(); ++k) {
     if (const PairStart start = pair_start(from_, node, *others_[k], *pairs_[k]); start.sample >= 0) {
-      starts_.emplace_back(k, start);
-      feather_ = std::max(feather_, feather_between(from_, *others_[k], *pairs_[k]));
+      starts_.push_back(
+          {k, start, feather_between(from_, *others_[k], *pairs_[k]), others_[k]->pose_variance_mm2()});
+      feather_ = std::max(feather_, starts_.back().feather);
     }
   }
 }
@@ -136,7 +151,7 @@ Projection Averager::meeting(const Course& course, const PairStart& start, std::
   line.p = pairs.on_other(line.p);
   const auto [row, col] = start.place_of(line.p);
   Projection q = project(line, on, row, col);
-  if (q.weight > 0 && !(within_reach(q) && course.normal.dot(on.normal(q.sample)) > pairs.min_normal_cos)) {
+  if (q.weight > 0 && !(within_reach(q) && course.normal.dot(q.normal) > pairs.min_normal_cos)) {
     // Another fold of the surface: from the nearest sample that looks the same way there is a way to the
     // right one.
     const std::int64_t j = pair_of(from_, course.sample, start, on, pairs);
@@ -150,17 +165,17 @@ Projection Averager::meeting(const Course& course, const PairStart& start, std::
 void Averager::write_average(const Course& course, std::size_t at, FusedSamples& out) const {
   const std::size_t i = course.sample;
   float shift_sum = 0;
-  float weight_sum = own_weight(i);
+  float weight_sum = course.weight;
   float best = from_.reliability(i);  // of a scan's passes: they look from one place
-  for (const auto& [k, q] : found_) {
-    best = others_[k]->id == from_.id ? std::max(best, q.reliability) : best;
+  for (const Found& found : found_) {
+    best = others_[found.other]->id == from_.id ? std::max(best, found.at.reliability) : best;
   }
   float doubt = 1.0F - best;
   float doubt_before = doubt;  // without the scan whose passes come
   bool sparse = from_.is_sparse(i);
   std::size_t scans = 1;
   int last = from_.id;
-  for (const auto& [k, q] : found_) {
+  for (const auto& [k, weight, variance, q] : found_) {
     const int id = others_[k]->id;
     if (id != last && id != from_.id) {  // passes of one scan follow each other
       ++scans;
@@ -172,7 +187,6 @@ void Averager::write_average(const Course& course, std::size_t at, FusedSamples&
       doubt = doubt_before * (1.0F - best);
     }
     last = id;
-    const float weight = weight_of(k, q);
     shift_sum += weight * q.along_mm;
     weight_sum += weight;
     sparse = sparse && !q.well_sampled;
@@ -192,9 +206,9 @@ float Averager::moved2_mm2(const Course& course, float weight_sum) const {
   const auto moved2 = [&](const StitchSurface& s, float weight) {
     return s.back.is_none() ? 0.0F : square(weight * s.back.at(course.line.p).dot(course.normal));
   };
-  float sum = moved2(from_, own_weight(course.sample));
-  for (const auto& [k, q] : found_) {
-    sum += moved2(*others_[k], weight_of(k, q));
+  float sum = moved2(from_, course.weight);
+  for (const Found& found : found_) {
+    sum += moved2(*others_[found.other], found.weight);
   }
   return sum / square(weight_sum);
 }
@@ -202,20 +216,14 @@ float Averager::moved2_mm2(const Course& course, float weight_sum) const {
 /// Of the average: noise and poses of different scans are independent, passes of one scan share its pose, and
 /// where the clay bends all other scans' triangles lie to the same side of it.
 float Averager::sigma_mm(const Course& course, float shift_mm, float weight_sum) const {
-  const auto variance_of = [](const StitchSurface& s, float weight) {
-    return s.variance_of_weight / weight + s.pose_variance_mm2();
-  };
-  const float own = from_.weight(course.sample);
-  const float own_variance = variance_of(from_, own);
-  const float own_part = own_weight(course.sample);
+  const float own_variance = from_.variance_of_weight / from_.weight(course.sample) + own_pose_variance_mm2_;
+  const float own_part = course.weight;
   float variance_sum = square(own_part) * own_variance;
   SharedPose own_pose{from_.id, own_part};
   SharedPose last_pose{from_.id, 0};
   float bulge_sum = 0;
   float chi2 = 0;
-  for (const auto& [k, q] : found_) {
-    const float weight = weight_of(k, q);
-    const float variance = variance_of(*others_[k], q.weight);
+  for (const auto& [k, weight, variance, q] : found_) {
     variance_sum += square(weight) * variance;
     SharedPose& pose = others_[k]->id == from_.id ? own_pose : last_pose;
     variance_sum += pose.covariance_with(*others_[k], weight);
@@ -237,11 +245,13 @@ void Averager::average(std::size_t at, FusedSamples& out) {
   const Vector3f& p = from_.points[i];
   const Vector3f normal = from_.normal(i);
   const Vector3f along = averaging_direction(from_, from_.lattice.sample_row(i), p, normal);
-  const Course course{i, normal, Line(p, along), along.dot(normal)};
+  const Course course{i, normal, Line(p, along), along.dot(normal), own_weight(i)};
   found_.clear();
-  for (const auto& [k, start] : starts_) {
-    if (const Projection q = meeting(course, start, k); q.weight > 0) {
-      found_.emplace_back(k, q);
+  for (const Start& start : starts_) {
+    if (const Projection q = meeting(course, start.pair, start.other); q.weight > 0) {
+      const StitchSurface& on = *others_[start.other];
+      found_.push_back({start.other, q.weight * on.pose_share * faded(q.rim, start.feather),
+                        on.variance_of_weight / q.weight + start.pose_variance_mm2, q});
     }
   }
   write_average(course, at, out);

@@ -96,7 +96,7 @@ class LineProjector {
       meet_around(row, col);
     }
     if (best_.weight > 0) {
-      best_.bulge_mm = bulge_mm();
+      take_normals();
     }
     return best_;
   }
@@ -228,9 +228,9 @@ class LineProjector {
         0.0F, 1.0F);
   }
 
-  /// Along an edge whose ends look apart, a surface of even curvature rises above the chord by
-  /// ½ λ (1 - λ) (n_b - n_a)·(b - a); of a triangle the three edges' parts add up.
-  [[nodiscard]] float bulge_mm() const {
+  /// The normal, and by all three the bulge. Along an edge whose ends look apart, a surface of even curvature
+  /// rises above the chord by ½ λ (1 - λ) (n_b - n_a)·(b - a); of a triangle the three edges' parts add up.
+  void take_normals() {
     std::array<Vector3f, 3> n;
     for (std::size_t k = 0; k < 3; ++k) {
       n[k] = s_->normal(corners_[k]);
@@ -241,7 +241,8 @@ class LineProjector {
       sum += shares_[k] * shares_[next] *
              (n[next] - n[k]).dot(s_->points[corners_[next]] - s_->points[corners_[k]]);
     }
-    return 0.5F * sum;
+    best_.normal = n[0];  // its first corner is best_.sample
+    best_.bulge_mm = 0.5F * sum;
   }
 
   static constexpr int kMostSteps = 6;

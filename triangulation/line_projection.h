@@ -22,12 +22,13 @@ struct Line {
 
 /// Where a line meets the triangles of a scan.
 struct Projection {
-  std::size_t sample = 0;     ///< a corner of the triangle
-  float along_mm = 0;         ///< from p along the line
-  bool well_sampled = false;  ///< none of the corners is sparse
-  std::uint8_t rim = 0;       ///< of the corner that is nearest to it
-  float weight = 0;           ///< interpolated; 0 where the line misses the other scan's triangles
-  float reliability = 0;      ///< interpolated
+  std::size_t sample = 0;           ///< a corner of the triangle
+  Eigen::Vector3f normal{0, 0, 0};  ///< of that sample
+  float along_mm = 0;               ///< from p along the line
+  bool well_sampled = false;        ///< none of the corners is sparse
+  std::uint8_t rim = 0;             ///< of the corner that is nearest to it
+  float weight = 0;                 ///< interpolated; 0 where the line misses the other scan's triangles
+  float reliability = 0;            ///< interpolated
   /// How far the surface lies from the flat triangle there if it bends as the normals at its corners say; out
   /// of the clay is positive.
   float bulge_mm = 0;

@@ -25,13 +25,13 @@ struct Distance {
 };
 using Distances = std::vector<Distance>;
 
-/// Seen by its own scanner at no more than 66° from the normal.
-bool is_seen_steeply(const StitchSurface& s, std::size_t i) {
+/// Seen by its own scanner at no more than 66° from the normal, which is that of the sample.
+bool is_seen_steeply(const StitchSurface& s, std::size_t i, const Vector3f& normal) {
   constexpr float kLeastCos = 0.4F;
   const Vector3f to_camera = s.view.camera_mm
                                  ? Vector3f((s.view.camera_mm->cast<float>() - s.points[i]).normalized())
                                  : Vector3f(-s.view.direction.cast<float>());
-  return s.normal(i).dot(to_camera) > kLeastCos;
+  return normal.dot(to_camera) > kLeastCos;
 }
 
 /// From samples of `from` along their normals to the triangles of `to`.
@@ -74,17 +74,19 @@ class Measuring {
   void measure(std::size_t i, const PairStart& start, Distances& found) const {
     constexpr int kLeastRim = 4;
     constexpr float kLeastNormalCos = 0.8F;
-    if (from_.usable[i] == 0 || from_.is_sparse(i) || from_.rim[i] < kLeastRim ||
-        !is_seen_steeply(from_, i)) {
+    if (from_.usable[i] == 0 || from_.is_sparse(i) || from_.rim[i] < kLeastRim) {
       return;
     }
     const Vector3f& p = from_.points[i];
     const Vector3f n = from_.normal(i);
+    if (!is_seen_steeply(from_, i, n)) {
+      return;
+    }
     const Vector3f there = pairs_.on_other(p);
     const auto [row, col] = start.place_of(there);
     const Projection q = project(Line(there, n), to_, row, col);
     if (q.weight > 0 && q.well_sampled && q.rim >= kLeastRim && std::abs(q.along_mm) <= pairs_.reach_mm &&
-        is_seen_steeply(to_, q.sample) && n.dot(to_.normal(q.sample)) > kLeastNormalCos) {
+        is_seen_steeply(to_, q.sample, q.normal) && n.dot(q.normal) > kLeastNormalCos) {
       const float apart_mm = q.along_mm + n.dot(there - p);
       found.push_back({motion_row(p.cast<double>(), sign_ * n.cast<double>(), about_mm_), apart_mm});
     }
