@@ -93,6 +93,10 @@ std::int64_t nearest_sample(const StitchSurface& to, const Vector3f& p, float re
   // What is looked up is every fourth sample; the walk goes to the nearest of all.
   const auto near_mm = static_cast<float>(2.0 * to.spacing_mm);
   const Vector3f there = (to.scanner_from_model * p.cast<double>()).cast<float>();
+  // Most places that the other scan has not seen lie at another depth than all that it has thereabouts.
+  if (!to.lookup->may_hold_samples(to.lookup->reach_of(there, reach_mm + near_mm))) {
+    return -1;
+  }
   const std::int64_t start = to.lookup->nearest(there, reach_mm + near_mm);
   if (start < 0) {
     return -1;
@@ -123,12 +127,16 @@ void find_matches(const StitchSurface& from, const StitchSurface& to, Pairs& pai
           }
           const auto i = static_cast<std::size_t>(sample);
           const Vector3f p = pairs.on_other(from.points[i]);
+          if (!box.contains(p)) {
+            continue;
+          }
+          const Vector3f normal = from.normal(i);
           // A scan cannot have seen what faces away from it.
-          if (!box.contains(p) || !may_see(to.view, p, from.normal(i))) {
+          if (!may_see(to.view, p, normal)) {
             continue;
           }
           const std::int64_t j = nearest_sample(to, p, pairs.reach_mm);
-          if (j >= 0 && from.normal(i).dot(to.normal(static_cast<std::size_t>(j))) > pairs.min_normal_cos) {
+          if (j >= 0 && normal.dot(to.normal(static_cast<std::size_t>(j))) > pairs.min_normal_cos) {
             pairs.match[node] = static_cast<std::int32_t>(j);
             ++count;
           }
