@@ -6,11 +6,13 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <utility>
 
 #include "core/order_statistics.h"
 #include "core/parallel.h"
+#include "core/wide_clones.h"
 
 namespace dubsar {
 
@@ -69,6 +71,86 @@ double spacing_of(const RangeGrid& grid) {
              : static_cast<double>(std::max(median_of(std::move(along)), median_of(std::move(across))));
 }
 
+struct Vec {
+  float x, y, z;
+};
+
+[[gnu::always_inline]] inline Vec step(const Vec& from, const Vec& to) {
+  return {to.x - from.x, to.y - from.y, to.z - from.z};
+}
+[[gnu::always_inline]] inline float dot(const Vec& a, const Vec& b) {
+  return a.x * b.x + (a.y * b.y + a.z * b.z);
+}
+[[gnu::always_inline]] inline Vec cross(const Vec& a, const Vec& b) {
+  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+[[gnu::always_inline]] inline float larger(float a, float b) {
+  return a < b ? b : a;
+}
+
+/// How far a sample stands out of the four beside it, mm; kMissing where one of the five is not there or far
+/// off, or is no number. Without a branch, so that the compiler can work on several samples at once.
+[[gnu::always_inline]] inline float stands_out_of(const Vec& at, const Vec& before, const Vec& after,
+                                                  const Vec& above, const Vec& below,
+                                                  std::int32_t all_are_there, float longest2_mm2) {
+  const Vec left = step(at, before), right = step(at, after);
+  const Vec up = step(at, above), down = step(at, below);
+  const float longest2 =
+      larger(larger(larger(dot(left, left), dot(right, right)), dot(up, up)), dot(down, down));
+  const Vec normal = cross(step(left, right), step(up, down));
+  const float length = std::sqrt(dot(normal, normal));
+  const Vec sum = {left.x + right.x + up.x + down.x, left.y + right.y + up.y + down.y,
+                   left.z + right.z + up.z + down.z};
+  const float out_mm = std::abs(dot(sum, normal)) / (kOfBend * length);
+  const std::int32_t has = static_cast<std::int32_t>(all_are_there != 0) &
+                           static_cast<std::int32_t>(longest2 <= longest2_mm2) &
+                           static_cast<std::int32_t>(length > 0);
+  return has != 0 ? out_mm : kMissing;
+}
+
+/// Samples of a row that are worked on at a time: what they need lies in the first cache.
+constexpr int kBlock = 64;
+
+/// Part of a row with one sample more at either end, each quantity by itself.
+struct RowPart {
+  float x[kBlock + 2] = {}, y[kBlock + 2] = {}, z[kBlock + 2] = {};
+  std::int32_t valid[kBlock + 2] = {};
+
+  /// `count` samples from the grid's sample `first` on.
+  [[gnu::always_inline]] void fill(const RangeGrid& grid, std::size_t first, int count) {
+    for (int c = 0; c < count; ++c) {
+      const std::size_t i = first + static_cast<std::size_t>(c);
+      x[c] = grid.x[i];
+      y[c] = grid.y[i];
+      z[c] = grid.z[i];
+      valid[c] = grid.valid[i];
+    }
+  }
+  [[gnu::always_inline]] [[nodiscard]] Vec at(int c) const { return {x[c], y[c], z[c]}; }
+};
+
+/// stands_out_of() of a row that is not the first or last, all but its ends; out_mm: [cols].
+DUBSAR_WIDE_CLONES void row_stands_out(const RangeGrid& grid, int row, float longest2_mm2, float* out_mm) {
+  const auto wide = static_cast<std::size_t>(grid.cols);
+  RowPart above, here, below;
+  float out[kBlock] = {};
+  for (int begin = 1; begin + 1 < grid.cols; begin += kBlock) {
+    const int count = std::min(grid.cols - 1 - begin, kBlock);
+    const std::size_t first = grid.index(row, begin - 1);
+    above.fill(grid, first - wide, count + 2);
+    here.fill(grid, first, count + 2);
+    below.fill(grid, first + wide, count + 2);
+    for (int c = 0; c < count; ++c) {
+      const int i = c + 1;
+      const std::int32_t all =
+          here.valid[i] & here.valid[i - 1] & here.valid[i + 1] & above.valid[i] & below.valid[i];
+      out[c] = stands_out_of(here.at(i), here.at(i - 1), here.at(i + 1), above.at(i), below.at(i), all,
+                             longest2_mm2);
+    }
+    std::copy_n(out, count, out_mm + begin);
+  }
+}
+
 /// What surrounds samples that are not in the first or last row or column.
 class Surroundings {
  public:
@@ -77,37 +159,27 @@ class Surroundings {
         wide_(static_cast<std::size_t>(grid.cols)),
         longest2_(static_cast<float>(kLongestLink * kLongestLink * spacing_mm * spacing_mm)) {}
 
-  /// How far a sample stands out of the four beside it, mm; kMissing where one of them is.
+  /// How far a sample stands out of the four beside it, mm, or kMissing.
   [[nodiscard]] float stands_out(std::size_t i) const {
-    if ((grid_.valid[i] & grid_.valid[i - 1] & grid_.valid[i + 1] & grid_.valid[i - wide_] &
-         grid_.valid[i + wide_]) == 0) {
-      return kMissing;
-    }
-    const Eigen::Vector3f at = grid_.point(i);
-    const Eigen::Vector3f left = grid_.point(i - 1) - at, right = grid_.point(i + 1) - at;
-    const Eigen::Vector3f up = grid_.point(i - wide_) - at, down = grid_.point(i + wide_) - at;
-    const float longest2 =
-        std::max({left.squaredNorm(), right.squaredNorm(), up.squaredNorm(), down.squaredNorm()});
-    const Eigen::Vector3f normal = (right - left).cross(down - up);
-    const float length = normal.norm();
-    if (!(longest2 <= longest2_) || !(length > 0)) {
-      return kMissing;
-    }
-    return std::abs((left + right + up + down).dot(normal)) / (kOfBend * length);
+    const std::int32_t all = grid_.valid[i] & grid_.valid[i - 1] & grid_.valid[i + 1] &
+                             grid_.valid[i - wide_] & grid_.valid[i + wide_];
+    return stands_out_of(at(i), at(i - 1), at(i + 1), at(i - wide_), at(i + wide_), all, longest2_);
   }
+  /// The same of all of a row but its ends, many at a time: several times as fast. out_mm: [cols].
+  void stand_out(int row, float* out_mm) const { row_stands_out(grid_, row, longest2_, out_mm); }
 
   /// Of a sample that stands out; nothing where one of the eight around it is missing or far off.
   [[nodiscard]] std::optional<ScanMark> mark(std::size_t i) const {
-    const std::array<std::size_t, 8> at{i - 1,         i + 1,         i - wide_,     i + wide_,
-                                        i - wide_ - 1, i + wide_ + 1, i - wide_ + 1, i + wide_ - 1};
+    const std::array<std::size_t, 8> beside{i - 1,         i + 1,         i - wide_,     i + wide_,
+                                            i - wide_ - 1, i + wide_ + 1, i - wide_ + 1, i + wide_ - 1};
     const auto is_near = [&](std::size_t j) {  // NaN is not
       return grid_.valid[j] != 0 && (grid_.point(j) - grid_.point(i)).squaredNorm() <= 4 * longest2_;
     };
-    if (!std::ranges::all_of(at, is_near)) {
+    if (!std::ranges::all_of(beside, is_near)) {
       return std::nullopt;
     }
     std::array<Eigen::Vector3f, 8> to;
-    std::ranges::transform(at, to.begin(),
+    std::ranges::transform(beside, to.begin(),
                            [&](std::size_t j) -> Eigen::Vector3f { return grid_.point(j) - grid_.point(i); });
     const auto& [left, right, up, down, up_left, down_right, up_right, down_left] = to;
     const Eigen::Vector3f along = left + right;
@@ -127,6 +199,7 @@ class Surroundings {
   }
 
  private:
+  [[nodiscard]] Vec at(std::size_t i) const { return {grid_.x[i], grid_.y[i], grid_.z[i]}; }
   /// Along the normal of the surface.
   [[nodiscard]] Eigen::Vector3f upright(std::size_t i) const {
     return (grid_.point(i + 1) - grid_.point(i - 1)).cross(grid_.point(i + wide_) - grid_.point(i - wide_));
@@ -162,10 +235,7 @@ class Band {
       : first_(std::max(0, first_row)), end_(std::min(grid.rows, end_row)), cols_(grid.cols) {
     out_mm_.assign(static_cast<std::size_t>(end_ - first_) * static_cast<std::size_t>(cols_), kMissing);
     for (int row = std::max(first_, 1); row < std::min(end_, grid.rows - 1); ++row) {
-      float* const line = line_of(row);
-      for (int col = 1; col + 1 < cols_; ++col) {
-        line[col] = around.stands_out(grid.index(row, col));
-      }
+      around.stand_out(row, line_of(row));
     }
   }
 
