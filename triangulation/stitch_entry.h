@@ -22,6 +22,7 @@ struct Entry {
   StitchSurface surface;
   std::map<PassKey, Pairs> pairs;     ///< by the other pass; those without a pair hold no matches
   std::map<PassKey, PoseStep> steps;  ///< to passes that come later, of other scans, by the same keys
+  std::vector<float> votes;           ///< by node, that `wanted` is of
   std::vector<std::uint8_t> wanted;
   FusedSamples fused;
   /// By node: 1 where pairs have come or gone that wanted and fused do not know of yet; empty: nowhere.

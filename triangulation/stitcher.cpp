@@ -184,6 +184,28 @@ struct Stitcher::Impl {
     return true;
   }
 
+  /// Which samples scans want, by the votes of each: whom one leaves a place to may change with scans that it
+  /// has no pair in. Of a scan whose votes are as they were the samples are, too.
+  void want(std::vector<std::vector<float>> votes) {
+    std::vector<Entry*> anew;
+    auto of_entry = votes.begin();
+    for (auto& [key, entry] : entries) {
+      if (entry.votes != *of_entry) {
+        entry.votes = std::move(*of_entry);
+        anew.push_back(&entry);
+      }
+      ++of_entry;
+    }
+    // Side by side: much of it is work for a single thread.
+    parallel_for_each_index(
+        anew.size(),
+        [&](std::size_t k) {
+          anew[k]->wanted =
+              wanted_samples(anew[k]->surface, anew[k]->votes, options.ownership.least_wanted_patch_samples);
+        },
+        1);
+  }
+
   /// All scans with their pairs and which samples they want; where these go is worked out for those that are
   /// new or whose pairs have changed. Empty when cancelled.
   [[nodiscard]] std::vector<OwnedScan> owned_scans(const JobContext& job) {
@@ -203,18 +225,17 @@ struct Stitcher::Impl {
         scan.other_surface.push_back(&entries.at(other_key).surface);
       }
     }
-    const std::vector<std::vector<float>> votes = primary_votes(scans, job);
+    std::vector<std::vector<float>> votes = primary_votes(scans, job);
     if (votes.size() != scans.size()) {
       return {};
     }
+    want(std::move(votes));
     std::size_t at = 0;
     for (auto& [key, entry] : entries) {
       if (job.cancelled()) {
         return {};
       }
       job.progress("average samples", static_cast<double>(at) / static_cast<double>(scans.size()));
-      // Whom it leaves a place to may change with scans that it has no pair in.
-      entry.wanted = wanted_samples(entry.surface, votes[at], options.ownership.least_wanted_patch_samples);
       if (!entry.changed.empty()) {
         const Lattice& lattice = entry.surface.lattice;
         // Samples of a node may go by the pair of one beside it.
@@ -248,8 +269,8 @@ struct Stitcher::Impl {
       for (auto& [key, entry] : entries) {
         entry.pairs.clear();
         StitchSurface& surface = entry.surface;
-        release(entry.wanted, surface.points, surface.usable, surface.reliability_code, surface.weight_code,
-                surface.rim, surface.score, surface.node_sample);
+        release(entry.votes, entry.wanted, surface.points, surface.usable, surface.reliability_code,
+                surface.weight_code, surface.rim, surface.score, surface.node_sample);
       }
     }
     const auto laid = [&] {
