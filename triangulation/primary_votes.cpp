@@ -2,6 +2,7 @@
 // Copyright The Dubsar developers
 #include "triangulation/primary_votes.h"
 
+#include <algorithm>
 #include <utility>
 
 #include "core/parallel.h"
@@ -18,26 +19,68 @@ constexpr float kGainOfNeighbours = 0.3F;
 constexpr int kNeighbourNodes = 3;
 constexpr int kRounds = 3;  ///< further ones move little
 
+/// Which of the other scans have the place of each node of a scan, and at which of their nodes: worked out
+/// once, and asked for in each round.
+class Rivals {
+ public:
+  struct Rival {
+    std::uint32_t scan = 0, node = 0;
+  };
+
+  Rivals(const std::vector<OwnedScan>& scans, std::size_t self)
+      : start_(scans[self].surface->lattice.size() + 1, 0) {
+    const OwnedScan& scan = scans[self];
+    const std::size_t nodes = start_.size() - 1;
+    parallel_chunks(nodes, kGrain, [&](std::size_t begin, std::size_t end) {
+      for (const Pairs* const pairs : scan.pairs) {
+        for (std::size_t node = begin; node < end; ++node) {
+          start_[node + 1] += pairs->match[node] >= 0 ? 1U : 0U;
+        }
+      }
+    });
+    for (std::size_t node = 0; node < nodes; ++node) {
+      start_[node + 1] += start_[node];
+    }
+    rivals_.resize(start_.back());
+    parallel_chunks(nodes, kGrain, [&](std::size_t begin, std::size_t end) {
+      std::vector<std::uint32_t> next(start_.begin() + static_cast<std::ptrdiff_t>(begin),
+                                      start_.begin() + static_cast<std::ptrdiff_t>(end));
+      for (std::size_t k = 0; k < scan.pairs.size(); ++k) {
+        const Lattice& theirs = scans[scan.other[k]].surface->lattice;
+        for (std::size_t node = begin; node < end; ++node) {
+          if (const std::int32_t j = scan.pairs[k]->match[node]; j >= 0) {
+            rivals_[next[node - begin]++] = {
+                static_cast<std::uint32_t>(scan.other[k]),
+                static_cast<std::uint32_t>(theirs.node_of(static_cast<std::size_t>(j)))};
+          }
+        }
+      }
+    });
+  }
+
+  [[nodiscard]] std::span<const Rival> at(std::size_t node) const {
+    return {rivals_.data() + start_[node], rivals_.data() + start_[node + 1]};
+  }
+
+ private:
+  std::vector<std::uint32_t> start_;  ///< by node, and the end
+  std::vector<Rival> rivals_;
+};
+
 /// Of the scan at `self`; `wish`: how much each scan wants each of its nodes.
-std::vector<float> votes_of(const std::vector<OwnedScan>& scans, std::size_t self,
+std::vector<float> votes_of(const StitchSurface& surface, std::size_t self, const Rivals& rivals,
                             const std::vector<std::vector<float>>& wish) {
-  const OwnedScan& scan = scans[self];
-  std::vector<float> votes(scan.surface->lattice.size(), 0);
+  std::vector<float> votes(surface.lattice.size(), 0);
   parallel_chunks(votes.size(), kGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t node = begin; node < end; ++node) {
-      if (scan.surface->node_sample[node] < 0) {
+      if (surface.node_sample[node] < 0) {
         continue;
       }
       const float mine = wish[self][node];
-      bool best = true;
-      for (std::size_t k = 0; best && k < scan.pairs.size(); ++k) {
-        const std::size_t other = scan.other[k];
-        if (const std::int32_t j = scan.pairs[k]->match[node]; j >= 0) {
-          const float theirs =
-              wish[other][scans[other].surface->lattice.node_of(static_cast<std::size_t>(j))];
-          best = mine > theirs || (mine == theirs && self < other);
-        }
-      }
+      const bool best = std::ranges::all_of(rivals.at(node), [&](const Rivals::Rival& rival) {
+        const float theirs = wish[rival.scan][rival.node];
+        return mine > theirs || (mine == theirs && self < rival.scan);
+      });
       votes[node] = best ? 1.0F : -1.0F;
     }
   });
@@ -62,15 +105,20 @@ std::vector<float> wish_of(const StitchSurface& surface, std::vector<float> vote
 
 std::vector<std::vector<float>> primary_votes(const std::vector<OwnedScan>& scans, const JobContext& job) {
   std::vector<std::vector<float>> wish(scans.size()), votes(scans.size());
+  std::vector<Rivals> rivals;
   for (std::size_t self = 0; self < scans.size(); ++self) {
+    if (job.cancelled()) {
+      return {};
+    }
     wish[self] = scans[self].surface->score;
+    rivals.emplace_back(scans, self);
   }
   for (int round = 0; round <= kRounds; ++round) {
     for (std::size_t self = 0; self < scans.size(); ++self) {
       if (job.cancelled()) {
         return {};
       }
-      votes[self] = votes_of(scans, self, wish);
+      votes[self] = votes_of(*scans[self].surface, self, rivals[self], wish);
     }
     for (std::size_t self = 0; round < kRounds && self < scans.size(); ++self) {
       wish[self] = wish_of(*scans[self].surface, votes[self]);
