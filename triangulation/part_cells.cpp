@@ -20,6 +20,7 @@ constexpr std::size_t kGrain = 16384;
 class PartCells {
  public:
   static constexpr std::uint32_t kMixed = 0;
+  using Entry = std::pair<std::uint64_t, std::uint32_t>;  ///< key of a cell, part
 
   PartCells(const Vector3f& low, float cell_mm) : low_(low), per_mm_(1.0F / cell_mm), slots_(1U << 12U) {}
 
@@ -48,6 +49,17 @@ class PartCells {
     } else if (slot.part != part) {
       slot.part = kMixed;
     }
+  }
+  /// For another raster of the same cells.
+  [[nodiscard]] std::vector<Entry> entries() const {
+    std::vector<Entry> out;
+    out.reserve(count_);
+    for (const Slot& slot : slots_) {
+      if (slot.key != kEmpty) {
+        out.emplace_back(slot.key, slot.part);
+      }
+    }
+    return out;
   }
   /// True when nothing but one part lies in the cell and in those around it.
   [[nodiscard]] bool is_calm(std::uint64_t key) const {
@@ -138,20 +150,24 @@ std::vector<std::uint32_t> faces_at_stake(Positions positions, std::span<const F
                                           const Eigen::AlignedBox3f& all, float cell_mm,
                                           const JobContext& job) {
   PartCells cells(all.min(), cell_mm);
-  using Entries = std::vector<std::pair<std::uint64_t, std::uint32_t>>;
+  using Entries = std::vector<PartCells::Entry>;
+  // Some thousand faces beside each other lie in few cells: these are gathered side by side, and what is left
+  // for one thread is to put them together.
   const Entries entries = parallel_reduce_ordered(
       faces.size(), kGrain, Entries{},
       [&](std::size_t begin, std::size_t end) {
-        Entries found;
+        PartCells found(all.min(), cell_mm);
+        PartCells::Entry last;  // of no cell
         for (std::size_t i = begin; i < end && !job.cancelled(); ++i) {
-          for_each_cell(cells, box_of(positions, faces[i]), cell_mm, [&](std::uint64_t key) {
-            const std::pair entry(key, part_of_face[i]);
-            if (found.empty() || found.back() != entry) {  // faces beside each other mostly share theirs
-              found.push_back(entry);
+          for_each_cell(found, box_of(positions, faces[i]), cell_mm, [&](std::uint64_t key) {
+            const PartCells::Entry entry(key, part_of_face[i]);
+            if (entry != last) {  // faces beside each other mostly share theirs
+              found.add(key, part_of_face[i]);
+              last = entry;
             }
           });
         }
-        return found;
+        return found.entries();
       },
       [](Entries& total, const Entries& part) { total.insert(total.end(), part.begin(), part.end()); });
   for (std::size_t k = 0; k < entries.size() && !job.cancelled(); ++k) {
