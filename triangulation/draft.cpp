@@ -67,10 +67,11 @@ class Patch {
     each_row([&](std::size_t row) {
       std::uint32_t vertices = 0;
       std::uint32_t faces = 0;
-      for (std::size_t i = row * width(); i < (row + 1) * width(); ++i) {
+      for (std::size_t col = 0; col < width(); ++col) {
+        const std::size_t i = row * width() + col;
         vertices += scan.kept[i];
         faces += static_cast<std::uint32_t>(((scan.cells[i] >> 1) & 1) + ((scan.cells[i] >> 2) & 1));
-        if (is_inner(row, i) && !bridge(scan, i).empty()) {
+        if (scan.kept[i] == 0 && is_inner(row, col) && scan.kept[i - 1] != 0 && !bridge(scan, i).empty()) {
           bridged_[i] = 1;
           faces += 2;
         }
@@ -151,8 +152,7 @@ class Patch {
 
  private:
   [[nodiscard]] std::size_t width() const { return static_cast<std::size_t>(lattice_->cols); }
-  [[nodiscard]] bool is_inner(std::size_t row, std::size_t i) const {
-    const std::size_t col = i % width();
+  [[nodiscard]] bool is_inner(std::size_t row, std::size_t col) const {
     return row > 0 && row + 1 < static_cast<std::size_t>(lattice_->rows) && col > 0 && col + 1 < width();
   }
   template <class Visit>
@@ -164,10 +164,11 @@ class Patch {
     std::vector<std::uint8_t> rim(scan_->kept.size(), 0);
     const auto whole = [&](std::size_t cell) { return (scan_->cells[cell] & kBoth) == kBoth; };
     each_row([&](std::size_t row) {
-      for (std::size_t i = row * width(); i < (row + 1) * width(); ++i) {
+      for (std::size_t col = 0; col < width(); ++col) {
+        const std::size_t i = row * width() + col;
         if (scan_->kept[i] != 0) {
           rim[i] =
-              is_inner(row, i) && whole(i) && whole(i - 1) && whole(i - width()) && whole(i - width() - 1)
+              is_inner(row, col) && whole(i) && whole(i - 1) && whole(i - width()) && whole(i - width() - 1)
                   ? 0
                   : 1;
         }
