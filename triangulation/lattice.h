@@ -53,11 +53,17 @@ struct Lattice {
   /// Calls visit(sample) for the samples of a node's block, row by row.
   template <class Visit>
   void for_each_sample(std::size_t node, const Visit& visit) const {
+    for_each_place(node, [&](int, int, std::size_t sample) { visit(sample); });
+  }
+  /// visit(row, col, sample) for the same.
+  template <class Visit>
+  void for_each_place(std::size_t node, const Visit& visit) const {
     const int row = row_of(node) * kNodeSide;
     const int col = col_of(node) * kNodeSide;
     for (int r = row; r < std::min(row + kNodeSide, rows); ++r) {
       for (int c = col; c < std::min(col + kNodeSide, cols); ++c) {
-        visit(static_cast<std::size_t>(r) * static_cast<std::size_t>(cols) + static_cast<std::size_t>(c));
+        visit(r, c,
+              static_cast<std::size_t>(r) * static_cast<std::size_t>(cols) + static_cast<std::size_t>(c));
       }
     }
   }

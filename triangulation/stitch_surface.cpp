@@ -143,25 +143,23 @@ std::vector<std::uint8_t> rim_distance(const std::vector<std::uint8_t>& usable,
   return distance;
 }
 
-/// The cosine of the incidence of what a camera sees: 0.05 at the least.
+/// The cosine of the incidence of what a camera sees in a row: 0.05 at the least.
 class Incidence {
  public:
-  explicit Incidence(const ScannerView& view) : against_(-view.direction.cast<float>()) {
+  Incidence(const ScannerView& view, std::size_t row) : against_(-view.direction.cast<float>()) {
     if (view.camera_mm) {
-      camera_ = view.camera_mm->cast<float>();
-      per_row_ = view.motion_per_row_mm.cast<float>();
+      camera_ = Vector3f(view.camera_mm->cast<float>() +
+                         static_cast<float>(row) * view.motion_per_row_mm.cast<float>());
     }
   }
-  [[nodiscard]] float cosine(const Vector3f& p, const Vector3f& normal, int row) const {
-    const Vector3f to_camera =
-        camera_ ? Vector3f((*camera_ + static_cast<float>(row) * per_row_ - p).normalized()) : against_;
+  [[nodiscard]] float cosine(const Vector3f& p, const Vector3f& normal) const {
+    const Vector3f to_camera = camera_ ? Vector3f((*camera_ - p).normalized()) : against_;
     return std::clamp(normal.dot(to_camera), 0.05F, 1.0F);
   }
 
  private:
   Vector3f against_;
   std::optional<Vector3f> camera_;
-  Vector3f per_row_ = Vector3f::Zero();
 };
 
 /// The sample that stands for each node, and how much the scan wants to be primary there.
@@ -179,12 +177,12 @@ void lay_nodes(StitchSurface& out, const std::vector<float>& cosines, const Stit
         float sum = 0;
         int count = 0;
         int rim = 0;
-        lattice.for_each_sample(node, [&](std::size_t i) {
+        lattice.for_each_place(node, [&](int row, int col, std::size_t i) {
           if (out.usable[i] == 0) {
             return;
           }
-          const int dr = lattice.sample_row(i) - middle_row;
-          const int dc = lattice.sample_col(i) - middle_col;
+          const int dr = row - middle_row;
+          const int dc = col - middle_col;
           if (dr * dr + dc * dc < nearest) {
             nearest = dr * dr + dc * dc;
             out.node_sample[node] = static_cast<std::int32_t>(i);
@@ -293,24 +291,27 @@ std::vector<float> weigh_samples(const PlacedScan& scan, const std::vector<Vecto
   const auto code = [](float part) {
     return static_cast<std::uint16_t>(std::clamp(part, 0.0F, 1.0F) * StitchSurface::kCodes + 0.5F);
   };
-  const Incidence incidence(out.view);
   std::vector<float> cosines(grid.size());
   parallel_for_each_index(
-      grid.size(),
-      [&](std::size_t i) {
-        out.normals[i] = PackedNormal(normals[i]);
-        if (out.usable[i] == 0) {
-          return;
+      static_cast<std::size_t>(grid.rows),
+      [&](std::size_t row) {
+        const Incidence incidence(out.view, row);
+        const std::size_t end = grid.index(static_cast<int>(row) + 1, 0);
+        for (std::size_t i = grid.index(static_cast<int>(row), 0); i < end; ++i) {
+          out.normals[i] = PackedNormal(normals[i]);
+          if (out.usable[i] == 0) {
+            continue;
+          }
+          out.usable[i] = is_unflagged(flags_of(scan, i)) ? kUsable : kUsable | kUsableSparse;
+          const float cosine = incidence.cosine(out.points[i], normals[i]);
+          cosines[i] = cosine;
+          const float confidence = grid.confidence.empty() ? 1.0F : told_confidence(grid.confidence[i]);
+          out.reliability_code[i] = code(cosine * cosine * confidence);
+          const float doubt = out.is_sparse(i) ? kSparseWeight : inner[i] == 0 ? kRimWeight : 1.0F;
+          out.weight_code[i] = std::max<std::uint16_t>(code(confidence * doubt), 1);
         }
-        out.usable[i] = is_unflagged(flags_of(scan, i)) ? kUsable : kUsable | kUsableSparse;
-        const float cosine = incidence.cosine(out.points[i], normals[i], grid.row_of(i));
-        cosines[i] = cosine;
-        const float confidence = grid.confidence.empty() ? 1.0F : told_confidence(grid.confidence[i]);
-        out.reliability_code[i] = code(cosine * cosine * confidence);
-        const float doubt = out.is_sparse(i) ? kSparseWeight : inner[i] == 0 ? kRimWeight : 1.0F;
-        out.weight_code[i] = std::max<std::uint16_t>(code(confidence * doubt), 1);
       },
-      4096);
+      16);
   return cosines;
 }
 
