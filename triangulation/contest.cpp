@@ -306,11 +306,27 @@ bool NodeContest::is_taken(std::size_t i) {
   return false;
 }
 
+bool NodeContest::is_near(std::size_t k, const std::array<std::size_t, 3>& t) {
+  const std::vector<std::uint8_t>& near_kept = (*scans_)[scan_->other[k]].near_kept;
+  return std::ranges::any_of(t, [&](std::size_t corner) {
+    const std::int64_t j = pair(k, corner);
+    return j >= 0 && near_kept[static_cast<std::size_t>(j)] != 0;
+  });
+}
+
 bool NodeContest::meets_another(std::span<const Vector3f> points, const std::array<std::size_t, 3>& t) {
+  // Most lie near nothing: for them no plane is laid.
+  std::size_t k = 0;
+  while (k < scan_->pairs.size() && (contest_->by_pair[k][node_] == 0 || !is_near(k, t))) {
+    ++k;
+  }
+  if (k == scan_->pairs.size()) {
+    return false;
+  }
   const Vector3f &p0 = points[t[0]], &p1 = points[t[1]], &p2 = points[t[2]];
   const Plane plane(p0, (p1 - p0).cross(p2 - p0).normalized());
   const FlatTriangle flat = {plane(p0), plane(p1), plane(p2)};
-  for (std::size_t k = 0; k < scan_->pairs.size(); ++k) {
+  for (; k < scan_->pairs.size(); ++k) {
     if (contest_->by_pair[k][node_] == 0) {
       continue;
     }

@@ -48,6 +48,8 @@ class NodeContest {
   [[nodiscard]] const PairStart& start(std::size_t k, std::size_t sample);
   [[nodiscard]] std::int64_t pair(std::size_t k, std::size_t sample);
   [[nodiscard]] bool is_taken_by(std::size_t k, std::size_t i);
+  /// Whether what the k-th pair's scan keeps lies near one of a triangle's corners.
+  [[nodiscard]] bool is_near(std::size_t k, const std::array<std::size_t, 3>& t);
 
   const std::vector<OwnedScan>* scans_;
   const OwnedScan* scan_;
