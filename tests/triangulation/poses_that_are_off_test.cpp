@@ -7,6 +7,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
 #include <limits>
 #include <map>
 #include <utility>
@@ -17,6 +19,9 @@
 #include "tests/triangulation/support/evenly_spread.h"
 #include "tests/triangulation/support/simulated_tablet.h"
 #include "triangulation/mesh_check.h"
+#include "triangulation/pairing.h"
+#include "triangulation/pose_step.h"
+#include "triangulation/stitch_surface.h"
 
 namespace dubsar {
 namespace {
@@ -191,6 +196,36 @@ TEST(PosesThatAreOff, WhatIsToldOfAllOfThemOutlivesTheMotionOfOne) {
   const double mean_mm = 0.15 / std::sqrt(3.0 * 6);
   EXPECT_GT(sigma_mm({0, 0, 0}), mean_mm);
   EXPECT_GT(sigma_mm(kOff), mean_mm) << "the motion of one took it off all";
+}
+
+struct Measured {
+  std::size_t nodes = 0;  ///< with a pair
+  PoseStep step;
+};
+/// Two flat scans of so many samples along either side, the second 0.03 mm above the first.
+Measured measured_above(int side) {
+  test::ScanSet set;
+  for (std::uint64_t seed = 1; seed <= 2; ++seed) {
+    Random random(seed);
+    const auto noise = [&](double, double) { return 0.005 * random.normal(); };
+    set.add(test::height_grid(side, side, 0.05, noise), {});
+  }
+  set.placed[1].model_from_scanner.translation_mm.z() += 0.03;
+  const StitchSurface below = make_scan_surface(set.placed[0], {});
+  const StitchSurface above = make_scan_surface(set.placed[1], {});
+  const double reach_mm = pair_reach_mm(below, above, {});
+  const Pairs there = find_pairs(below, above, reach_mm, {});
+  return {there.nodes, pose_step(below, there, above, find_pairs(above, below, reach_mm, {}))};
+}
+
+TEST(PosesThatAreOff, OfALargeOverlapAPartTellsTheStep) {
+  const Measured few = measured_above(200);
+  EXPECT_GT(few.step.count, few.nodes + few.nodes / 2) << "either way at nearly all of them";
+  const Measured many = measured_above(520);
+  ASSERT_GT(many.nodes, 16000U);
+  EXPECT_LT(many.step.count, many.nodes + many.nodes / 2);
+  EXPECT_NEAR(many.step.step_mm(), few.step.step_mm(), 0.001);
+  EXPECT_NEAR(many.step.step_mm(), 0.03, 0.006);
 }
 
 TEST(PosesThatAreOff, OneThatGoesLeavesNoTrace) {
