@@ -11,6 +11,7 @@
 
 #include "core/disjoint_sets.h"
 #include "core/order_statistics.h"
+#include "core/parallel.h"
 
 namespace dubsar {
 
@@ -69,9 +70,8 @@ class Group {
   void write_misplacements(std::vector<Misplacement>& out) {
     constexpr int kRounds = 10;
     std::vector<MotionMatrix> moments(members_.size());
-    for (std::size_t k = 0; k < members_.size(); ++k) {
-      moments[k] = moments_of(scan(k));
-    }
+    parallel_for_each_index(
+        members_.size(), [&](std::size_t k) { moments[k] = moments_of(scan(k)); }, 1);
     std::vector<double> sizes(members_.size(), kUsualOfSpacing * spacing_mm_);
     Eigen::VectorXd motions;
     for (int round = 0; round < kRounds; ++round) {
