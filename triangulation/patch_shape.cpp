@@ -87,7 +87,7 @@ void remove_specks(std::vector<std::uint8_t>& kept, const std::vector<std::uint8
     is_large = enough == 1;
     for (std::size_t at = 0; at < patch.size() && !is_large; ++at) {
       const std::size_t i = patch[at];
-      const std::size_t col = i % width;
+      const auto col = static_cast<std::size_t>(grid.sample_col(i));
       if (i >= width && col > 0) {
         visit_cell(i - width - 1);
       }
@@ -136,8 +136,8 @@ void drop_scattered(std::vector<std::uint8_t>& fresh, std::span<const std::uint8
     visit(start);
     for (std::size_t at = 0; at < group.size() && !is_large; ++at) {
       const std::size_t i = group[at];
-      const std::size_t row = i / width;
-      const std::size_t col = i % width;
+      const auto row = static_cast<std::size_t>(grid.sample_row(i));
+      const auto col = static_cast<std::size_t>(grid.sample_col(i));
       for (std::size_t r = row - std::min<std::size_t>(row, 1); r <= std::min(row + 1, height - 1); ++r) {
         for (std::size_t c = col - std::min<std::size_t>(col, 1); c <= std::min(col + 1, width - 1); ++c) {
           visit(r * width + c);
