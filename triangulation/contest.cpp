@@ -204,11 +204,11 @@ NodeContest::NodeContest(const std::vector<OwnedScan>& scans, std::size_t self, 
       start_known_(scan_->pairs.size() * kStarts),
       pair_(scan_->pairs.size() * kAsked) {}
 
-void NodeContest::enter(std::size_t node) {
+void NodeContest::lay_out() {
   const Lattice& lattice = scan_->surface->lattice;
-  node_ = node;
-  row_ = lattice.row_of(node) * Lattice::kNodeSide;
-  col_ = lattice.col_of(node) * Lattice::kNodeSide;
+  is_laid_out_ = true;
+  row_ = lattice.row_of(node_) * Lattice::kNodeSide;
+  col_ = lattice.col_of(node_) * Lattice::kNodeSide;
   std::ranges::fill(start_known_, 0);
   std::ranges::fill(pair_, kNotAsked);
 }
@@ -218,6 +218,9 @@ const StitchSurface& NodeContest::other_surface(std::size_t k) const {
 }
 
 const PairStart& NodeContest::start(std::size_t k, std::size_t sample) {
+  if (!is_laid_out_) {
+    lay_out();
+  }
   const Lattice& lattice = scan_->surface->lattice;
   const bool below = lattice.sample_row(sample) >= row_ + Lattice::kNodeSide;
   const bool beside = lattice.sample_col(sample) >= col_ + Lattice::kNodeSide;
@@ -230,6 +233,9 @@ const PairStart& NodeContest::start(std::size_t k, std::size_t sample) {
 }
 
 std::int64_t NodeContest::pair(std::size_t k, std::size_t sample) {
+  if (!is_laid_out_) {
+    lay_out();
+  }
   const Lattice& lattice = scan_->surface->lattice;
   const int at = (lattice.sample_row(sample) - row_) * kAskedSide + lattice.sample_col(sample) - col_;
   std::int32_t& known = pair_[k * kAsked + static_cast<std::size_t>(at)];

@@ -31,8 +31,11 @@ class NodeContest {
   NodeContest(const std::vector<OwnedScan>& scans, std::size_t self, const Contest& contest,
               const OwnershipOptions& options);
 
-  /// What is asked from now on is of this node.
-  void enter(std::size_t node);
+  /// What is asked from now on is of this node. Costs nothing until something is.
+  void enter(std::size_t node) {
+    node_ = node;
+    is_laid_out_ = false;
+  }
 
   /// True when sample i of the node lies within the clearance of, or inside, what another scan keeps.
   [[nodiscard]] bool is_taken(std::size_t i);
@@ -44,6 +47,8 @@ class NodeContest {
 
  private:
   static constexpr std::size_t kNoPair = ~std::size_t{0};
+  /// Forgets what is known of the node before.
+  void lay_out();
   [[nodiscard]] const StitchSurface& other_surface(std::size_t k) const;
   [[nodiscard]] const PairStart& start(std::size_t k, std::size_t sample);
   [[nodiscard]] std::int64_t pair(std::size_t k, std::size_t sample);
@@ -56,6 +61,7 @@ class NodeContest {
   const Contest* contest_;
   const OwnershipOptions* options_;
   std::size_t node_ = 0;
+  bool is_laid_out_ = false;          ///< what follows is of this node
   int row_ = 0, col_ = 0;             ///< the node's first sample
   std::size_t last_taker_ = kNoPair;  ///< the pair that took the sample that was taken last
   std::vector<PairStart> starts_;     ///< by pair, of the node and the three after it
