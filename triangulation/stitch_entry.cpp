@@ -45,6 +45,14 @@ std::optional<FoundPairs> pairs_between(const PassKey& key, const StitchSurface&
 
 namespace {
 
+/// Two scans that have a step between them, and their pairs either way.
+struct Linked {
+  const StitchSurface* a;
+  const StitchSurface* b;
+  const Pairs* there;
+  const Pairs* back;
+};
+
 /// Pairs are where the other scan has the same place, as the motions say, not where its pose puts it. False
 /// when cancelled: then some are where they were.
 bool look_for_pairs_anew(Entries& entries, const std::function<SmallMotion(const PassKey&)>& back_of,
@@ -84,19 +92,28 @@ bool weigh_places(Entries& entries, const JobContext& job) {
   const auto back_of = [&](const PassKey& key) { return off[place.at(key.first)].back; };
   for (int round = 0; round < kRounds; ++round) {
     std::vector<PoseLink> links;
+    std::vector<Linked> linked;
     for (const auto& [key, entry] : entries) {
       for (const auto& [other_key, step] : entry.steps) {
-        if (job.cancelled()) {
-          return false;
-        }
         const Entry& other = entries.at(other_key);
-        const Pairs& there = entry.pairs.at(other_key);
-        const Pairs& back = other.pairs.at(key);
-        // Of pairs that are where the poses put them the step is known.
-        const bool as_posed = round == 0 || (there.onto.is_none() && back.onto.is_none());
-        links.push_back({place.at(key.first), place.at(other_key.first),
-                         as_posed ? step : pose_step(entry.surface, there, other.surface, back)});
+        links.push_back({place.at(key.first), place.at(other_key.first), step});
+        linked.push_back({&entry.surface, &other.surface, &entry.pairs.at(other_key), &other.pairs.at(key)});
       }
+    }
+    // Side by side: much of it is work for a single thread.
+    parallel_for_each_index(
+        links.size(),
+        [&](std::size_t k) {
+          const Linked& at = linked[k];
+          // Of pairs that are where the poses put them the step is known.
+          const bool as_posed = round == 0 || (at.there->onto.is_none() && at.back->onto.is_none());
+          if (!as_posed && !job.cancelled()) {
+            links[k].step = pose_step(*at.a, *at.there, *at.b, *at.back);
+          }
+        },
+        1);
+    if (job.cancelled()) {
+      return false;
     }
     off = misplacements(scans, links);
     if (!look_for_pairs_anew(entries, back_of, job)) {
