@@ -76,6 +76,7 @@ Result<bool> Engine::Impl::run_round(NextStep step, EngineResult& result, JobCon
   {
     const std::scoped_lock lock(mutex);
     queues = std::make_unique<Queues>();
+    takes_scans = true;
     if (!commands.empty()) {
       queues->to_register.try_push(CommandsWait{});
     }

@@ -75,7 +75,7 @@ class Engine {
   /// Asks for something: it is done between two scans, stored, and answered by an OperatorObeyed, or by a
   /// Notice that says why not. What comes while the device is opened, or before run(), is done once the
   /// session is read. From any thread, never from the event sink; returns at once. False when the engine
-  /// already writes its final results, or has ended.
+  /// already writes its final results, or has ended; of a ScanAgain, when it takes no more scans.
   bool post(OperatorCommand command);
   /// Behind run(): what was posted before a run that failed or was stopped came to it, moved out.
   [[nodiscard]] std::vector<OperatorCommand> take_unheeded();

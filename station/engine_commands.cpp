@@ -13,6 +13,9 @@ bool Engine::post(OperatorCommand command) {
   if (!impl_->takes_commands) {
     return false;
   }
+  if (std::holds_alternative<ScanAgain>(command) && (!impl_->takes_scans || impl_->finish_asked)) {
+    return false;  // it would only be taken out: that is for the next run
+  }
   if (std::holds_alternative<ScanNow>(command) || std::holds_alternative<Finish>(command)) {
     (std::holds_alternative<ScanNow>(command) ? impl_->scan_asked : impl_->finish_asked) = true;
     impl_->pace.notify_all();

@@ -183,6 +183,7 @@ struct Engine::Impl {
   std::optional<PinSet> pins;  ///< options.pins, and what the operator has labelled since
   std::deque<OperatorCommand> commands;
   bool takes_commands = true;  ///< until the final results are written
+  bool takes_scans = true;     ///< until the device rests
   bool halt_asked = false;
   bool scan_asked = false;    ///< of a paced run: ScanNow since the last scan
   bool finish_asked = false;  ///< of a paced run: Finish

@@ -157,6 +157,7 @@ void Engine::Impl::acquire(NextStep step, JobContext& job) {
   stop_motion_after_trouble(job);
   const std::optional<Error> error = [&] {
     const std::scoped_lock lock(mutex);
+    takes_scans = false;
     return device_error;
   }();
   emit(DeviceRests{error});

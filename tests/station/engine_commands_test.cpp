@@ -259,6 +259,30 @@ TEST(EngineCommands, AScannerThatNothingDrivesIsWaitedForWhereAScanIsToBeTakenAg
   EXPECT_TRUE(result.has_value()) << result.error().line();
 }
 
+/// A window starts the next run for it.
+TEST(EngineCommands, AScanIsNotTakenOutToBeTakenAgainWhereNoMoreAreTaken) {
+  const test::TemporaryFolder folder;
+  const auto scans = test::write_bumpy_scans(folder.path() / "scans", 2);
+  std::promise<void> rests, said;
+  Engine engine({"replay:" + scans.string(), folder.path() / "s", false, 0, std::nullopt},
+                [&](const Event& event) {
+                  if (std::holds_alternative<DeviceRests>(event)) {
+                    rests.set_value();
+                    said.get_future().wait();
+                  }
+                });
+  JobContext job;
+  std::optional<Result<EngineResult>> result;
+  std::jthread runs([&] { result.emplace(engine.run(job)); });
+  EXPECT_EQ(rests.get_future().wait_for(std::chrono::seconds(30)), std::future_status::ready);
+  EXPECT_FALSE(engine.post(ScanAgain{0}));
+  EXPECT_TRUE(engine.post(LockScan{0})) << "other words are heeded still";
+  said.set_value();
+  runs.join();
+  ASSERT_TRUE(*result) << result->error().line();
+  EXPECT_EQ((*result)->poses.size(), 2U);
+}
+
 std::vector<int> ids_of(const std::vector<ScanPose>& poses) {
   std::vector<int> ids;
   for (const ScanPose& pose : poses) {
