@@ -14,6 +14,7 @@
 #include <filesystem>
 #include <numbers>
 #include <string>
+#include <system_error>
 #include <thread>
 
 namespace dubsar::ui {
@@ -91,8 +92,9 @@ std::vector<std::uint8_t> tone_of(Sound sound) {
 }
 
 void play(Sound sound) {
-  std::string file = (std::filesystem::temp_directory_path() / "dubsar-XXXXXX").string();
-  const int open_file = mkstemp(file.data());
+  std::error_code nowhere;  // TMPDIR may be gone: no tone is worth the window
+  std::string file = (std::filesystem::temp_directory_path(nowhere) / "dubsar-XXXXXX").string();
+  const int open_file = nowhere ? -1 : mkstemp(file.data());
   if (open_file < 0) {
     return;
   }
@@ -103,7 +105,11 @@ void play(Sound sound) {
     unlink(file.c_str());
     return;
   }
-  std::thread([file] { play_file(file); }).detach();
+  try {
+    std::thread([file] { play_file(file); }).detach();
+  } catch (const std::system_error&) {  // nor is a thread that the system does not start
+    unlink(file.c_str());
+  }
 }
 
 }  // namespace dubsar::ui
