@@ -39,7 +39,10 @@ class RunningEngine {
   explicit RunningEngine(EngineOptions options)
       : engine_(std::move(options), [this](const Event& event) { hear(event); }),
         thread_([this] { result_.emplace(engine_.run(job_)); }) {}
-  ~RunningEngine() { join(); }
+  ~RunningEngine() {
+    job_.cancel();  // where a test has failed in its middle it may wait for somebody
+    join();
+  }
   RunningEngine(const RunningEngine&) = delete;
   RunningEngine& operator=(const RunningEngine&) = delete;
 
