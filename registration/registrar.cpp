@@ -42,7 +42,11 @@ std::vector<ScanPose> Registrar::poses() const {
 }
 
 bool Registrar::remove(int id, JobContext& job) {
+  const bool freed = state_->free_hints_of(id);
   const bool there = state_->remove(id, job);
+  if (freed) {
+    state_->retry(job);
+  }
   state_->settle_scale(job);
   state_->put_out_faulty(job);
   return there;
@@ -72,8 +76,11 @@ Status Registrar::set_hint(int id, const PoseHint& hint, JobContext& job) {
                 *locked == id ? "the scan is locked" : "scan " + std::to_string(*locked) + " is locked",
                 where, "unlock it first");
   }
-  state_->set_hint(id, hint);
+  const bool freed = state_->set_hint(id, hint);
   state_->follow_hint(id, job);
+  if (freed) {
+    state_->retry(job);
+  }
   state_->put_out_faulty(job);
   return {};
 }

@@ -56,7 +56,8 @@ class Registrar {
   [[nodiscard]] std::vector<ScanPose> poses() const;
   /// Takes a scan out; the others keep their poses, but for those that only it connected: they are tried
   /// without it, and are unsure when nothing else speaks for their pose. What it alone showed to be large is
-  /// no measure for the others any more. False when there is none of this id.
+  /// no measure for the others any more, and what a hint for it or on it kept outside is tried without. False
+  /// when there is none of this id.
   bool remove(int id, JobContext& job);
   /// The operator's word. Locked: the scan stays exactly there, registered, whatever the surfaces say. Not
   /// locked: a hint, good to a few degrees and millimetres, from which the scan is fitted and verified; also

@@ -57,9 +57,13 @@ class ScanModel {
 
   // The operator's word (scan_model_hint.cpp). A hint stands from when it is given, whether its scans are in
   // or not: groups that it spans are joined by it and by nothing else.
-  void set_hint(int id, const PoseHint& hint);
+  /// True when what another hint of this scan kept outside is to be tried without that one.
+  bool set_hint(int id, const PoseHint& hint);
   /// What it kept outside is tried without it.
   void clear_hint(int id, JobContext& job);
+  /// Before a scan is taken out: the hints for it and on it say nothing while it is. True when they kept
+  /// something outside, which is to be tried without them.
+  bool free_hints_of(int id);
   /// Places a scan that is in by its hint, taking it out of a place that the hint contradicts. True when it
   /// then stands where the hint says, verified.
   bool follow_hint(int id, JobContext& job);
@@ -252,6 +256,8 @@ class ScanModel {
   [[nodiscard]] std::string only_one(const std::vector<int>& ids, int id) const;
   /// The scan whose hint says how two groups lie to each other.
   [[nodiscard]] std::optional<int> hint_between(int group_a, int group_b) const;
+  /// What the hint for this scan kept outside is outside for it no more. True when there was such a scan.
+  bool free_hinted(int id);
   /// Whether no hint between the scan's group and the other contradicts the pose.
   [[nodiscard]] bool hints_hold(int id, int group, const RigidTransform& group_from_scanner) const;
   /// Joins the scan's group with the other from these poses alone, or says why not.

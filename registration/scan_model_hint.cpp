@@ -155,24 +155,44 @@ bool ScanModel::join_by_hint(int hinted, JobContext& job) {
   return false;
 }
 
-void ScanModel::set_hint(int id, const PoseHint& hint) {
+bool ScanModel::set_hint(int id, const PoseHint& hint) {
+  const bool freed = free_hinted(id);
   hints_[id] = hint;
+  return freed;
 }
 
-void ScanModel::clear_hint(int id, JobContext& job) {
+bool ScanModel::free_hinted(int id) {
   const auto hint = hints_.find(id);
   if (hint == hints_.end()) {
-    return;
+    return false;
   }
+  bool freed = false;
   for (const int either : {id, hint->second.on}) {
     if (const auto scan = scans_.find(stands_as(either));
         scan != scans_.end() && !scan->second.hint_reason.empty()) {
       scan->second.hint_reason.clear();
       scan->second.tried_on.clear();  // by its hint alone
+      freed = true;
     }
   }
-  hints_.erase(hint);
-  retry(job);
+  return freed;
+}
+
+bool ScanModel::free_hints_of(int id) {
+  bool freed = false;
+  for (const auto& [hinted, hint] : hints_) {
+    if (hinted == id || hint.on == id) {
+      freed = free_hinted(hinted) || freed;
+    }
+  }
+  return freed;
+}
+
+void ScanModel::clear_hint(int id, JobContext& job) {
+  free_hinted(id);
+  if (hints_.erase(id) > 0) {
+    retry(job);
+  }
 }
 
 bool ScanModel::follow_hint(int id, JobContext& job) {

@@ -183,6 +183,48 @@ TEST(Hints, AWrongWordLeavesOutNeitherTheScanThatItIsGivenOnNorTheOthers) {
   }
 }
 
+/// It says nothing while the scan is out that it is given on, and stands again when that one is put back.
+TEST(Hints, AWrongWordKeepsNothingOutWhenTheScanThatItIsGivenOnIsTakenOut) {
+  const auto surface = bumpy(27);
+  const std::vector<RigidTransform> truth{pose_of(0, 0, 0, {0, 0, 0}), pose_of(9, -5, 100, {2, -1, 0}),
+                                          pose_of(-7, 6, -50, {-2, 2, 0})};
+  const auto grid = [&](int id) {
+    return scanned(surface, truth[static_cast<std::size_t>(id)], 30U + static_cast<unsigned>(id));
+  };
+  Registrar registrar;
+  JobContext job;
+  ASSERT_TRUE(registrar.set_hint(
+      1,
+      clicked(0, surface, pose_of(0, 0, 95, {3, 0, 0}) * truth[1], truth[0], {{-15, -12}, {16, -8}, {2, 17}}),
+      job));
+  for (const int id : {0, 2, 1}) {
+    registrar.add(id, grid(id), nullptr, job);
+  }
+  ASSERT_NE(pose_in(registrar, 1).status, PoseStatus::kRegistered);
+  ASSERT_TRUE(registrar.remove(0, job));
+  const RigidTransform model_from_truth = pose_in(registrar, 2).model_from_scanner * truth[2].inverse();
+  const ScanPose without = pose_in(registrar, 1);
+  EXPECT_EQ(without.status, PoseStatus::kRegistered) << without.reason;
+  EXPECT_LT(error_mm(without, model_from_truth * truth[1]), 0.02);
+  EXPECT_EQ(registrar.add(0, grid(0), nullptr, job).status, PoseStatus::kRegistered);
+  EXPECT_THAT(pose_in(registrar, 1).reason, HasSubstr("the hint leads to no certain pose"));
+}
+
+TEST(Hints, AWrongWordKeepsNothingOutWhenItIsGivenOnAnotherScan) {
+  const auto surface = bumpy(23);
+  const RigidTransform truth = pose_of(8, 4, 40, {1, -2, 0});
+  const RigidTransform wrong = pose_of(0, 0, 95, {3, 0, 0}) * truth;
+  const std::vector<Eigen::Vector2d> places{{-15, -12}, {16, -8}, {2, 17}};
+  Registrar registrar;
+  JobContext job;
+  registrar.add(0, scanned(surface, {}, 1), nullptr, job);
+  ASSERT_TRUE(registrar.set_hint(1, clicked(0, surface, wrong, {}, places), job));
+  ASSERT_NE(registrar.add(1, scanned(surface, truth, 9), nullptr, job).status, PoseStatus::kRegistered);
+  ASSERT_TRUE(registrar.set_hint(1, clicked(2, surface, truth, {}, places), job));  // which is yet to come
+  EXPECT_EQ(pose_in(registrar, 1).status, PoseStatus::kRegistered) << pose_in(registrar, 1).reason;
+  EXPECT_LT(error_mm(pose_in(registrar, 1), truth), 0.02);
+}
+
 /// Nothing but the hinted scan overlaps the one that the hint is given on: what is registered stays.
 TEST(Hints, AWrongWordTakesNothingApartForNothing) {
   const auto surface = bumpy(28, 160);
