@@ -143,17 +143,26 @@ void ScanModel::rescale(double scale_mm) {
 
 void ScanModel::settle_scale(JobContext& job) {
   const Scan* largest = nullptr;
+  bool one_is_as_large = false;
   for (const auto& [id, scan] : scans_) {
-    if (scan.usable && (largest == nullptr || scan.own_scale_mm > largest->own_scale_mm)) {
-      largest = &scan;
+    if (scan.usable) {
+      largest = largest == nullptr || scan.own_scale_mm > largest->own_scale_mm ? &scan : largest;
+      one_is_as_large = one_is_as_large || (scan.own_scale_mm <= kMuchLarger * scale_mm_ &&
+                                            scale_mm_ <= kMuchLarger * scan.own_scale_mm);
     }
   }
-  if (largest == nullptr) {
-    scale_mm_ = 0;
-    first_spacing_mm_ = 0;
-  } else if (scale_mm_ > kMuchLarger * largest->own_scale_mm) {
-    first_spacing_mm_ = largest->own_spacing_mm;
-    rescale(largest->own_scale_mm);
+  if (one_is_as_large) {
+    return;
+  }
+  const ScanSize now =
+      largest != nullptr ? ScanSize{largest->own_scale_mm, largest->own_spacing_mm} : ScanSize{0, 0};
+  scale_mm_ = now.scale_mm;
+  first_spacing_mm_ = now.spacing_mm;
+  for (auto& [id, scan] : scans_) {
+    scan.suspicion = perhaps_other_unit({scan.own_scale_mm, scan.own_spacing_mm}, now);
+  }
+  if (largest != nullptr) {
+    rescale(now.scale_mm);
     retry(job);
   }
 }

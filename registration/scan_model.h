@@ -38,7 +38,7 @@ class ScanModel {
   /// Takes a scan out. What only it connected is tried at once without it; where it has a copy, that takes
   /// its place. False when there is none.
   bool remove(int id, JobContext& job);
-  /// After scans were taken out: where none that is left is nearly as large as what they were scaled by, they
+  /// After scans were taken out: where none that is left is about as large as what they were scaled by, they
   /// are scaled by the largest, and tried again.
   void settle_scale(JobContext& job);
   /// Tries to join the scan's group with every other group. True when it joined one.

@@ -20,6 +20,7 @@ using testing::bumpy;
 using ::testing::ElementsAre;
 using testing::FieldScan;
 using ::testing::HasSubstr;
+using ::testing::Not;
 using testing::pose_of;
 using testing::scan_field;
 
@@ -376,6 +377,48 @@ TEST(Registrar, WhatWasTakenOutIsNoMeasureForTheOthers) {
   for (const ScanPose& pose : registrar.poses()) {
     EXPECT_EQ(pose.status, PoseStatus::kRegistered) << pose.id << pose.reason;
   }
+}
+
+/// As a file in inches is read where nobody says so.
+RangeGrid in_inches(RangeGrid grid) {
+  for (auto* values : {&grid.x, &grid.y, &grid.z}) {
+    for (float& v : *values) {
+      v /= 25.4F;
+    }
+  }
+  grid.spacing_mm /= 25.4;
+  return grid;
+}
+
+/// The first scan was read in the wrong unit: what comes after it looks 25 times too large.
+TEST(Registrar, AScanInAnotherUnitThatWasTakenOutIsNoMeasureForTheOthers) {
+  const auto surface = bumpy(23);
+  Registrar registrar;
+  JobContext job;
+  registrar.add(0, share(in_inches(scan_field(surface, pose_of(-5, 2, 20, {0, 1, 0}), {.seed = 3}))), nullptr,
+                job);
+  registrar.add(1, share(scan_field(surface, {}, {.seed = 2})), nullptr, job);
+  registrar.add(2, share(scan_field(surface, pose_of(8, 4, 40, {1, -2, 0}), {.seed = 9})), nullptr, job);
+  EXPECT_THAT(registrar.poses()[1].reason + registrar.poses()[2].reason, HasSubstr("inches"));
+  ASSERT_TRUE(registrar.remove(0, job));
+  registrar.add(3, share(scan_field(surface, pose_of(-6, 3, -50, {2, 1, 0}), {.seed = 5})), nullptr, job);
+  for (const ScanPose& pose : registrar.poses()) {
+    EXPECT_EQ(pose.status, PoseStatus::kRegistered) << pose.id << pose.reason;
+  }
+}
+
+TEST(Registrar, WhatOnlyLookedSmallBesideAScanThatWasTakenOutIsNotSaidToBeInAnotherUnit) {
+  Registrar registrar;
+  JobContext job;
+  registrar.add(0, share(scan_field(bumpy(11), {}, {.seed = 3})), nullptr, job);
+  registrar.add(1, share(in_inches(scan_field(bumpy(23), {}, {.seed = 2}))), nullptr, job);
+  const ScanPose beside =
+      registrar.add(2, share(in_inches(scan_field(bumpy(99), {}, {.seed = 9}))), nullptr, job);
+  EXPECT_THAT(beside.reason, HasSubstr("inches"));
+  ASSERT_TRUE(registrar.remove(0, job));
+  const ScanPose alone = registrar.poses()[1];
+  EXPECT_NE(alone.status, PoseStatus::kRegistered);
+  EXPECT_THAT(alone.reason, Not(HasSubstr("inches")));
 }
 
 TEST(Registrar, ALockedScanThatComesBackIsNoReasonToGoOnWhenStopped) {
