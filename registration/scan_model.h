@@ -215,6 +215,9 @@ class ScanModel {
   /// Makes the scan a group of its own, and of each piece that nothing connects without it
   /// (scan_model_leave.cpp). True when there were such pieces.
   bool leave(int id);
+  /// After a scan has left it: what that one said of the others is to count no more. They keep their poses
+  /// until finalize(); one that is alone now is not measured against anything.
+  void settle_without_one(int group, JobContext& job);
   /// The largest first, each ascending: scans that pairs, the stage or the operator's locks connect.
   [[nodiscard]] std::vector<std::vector<int>> pieces_of(int group) const;
   /// Measures the pairs that touch across pieces.
@@ -268,7 +271,8 @@ class ScanModel {
   RegistrationOptions options_;
   double scale_mm_ = 0;
   double first_spacing_mm_ = 0;
-  bool is_unsettled_ = false;  ///< a relaxation was broken off: finalize() makes up for it
+  /// A relaxation was broken off, or a scan was taken out since: finalize() makes up for it.
+  bool is_unsettled_ = false;
   int next_group_ = 0;
   std::map<int, Scan> scans_;
   std::map<int, Copy> copies_;               ///< by id; no id is in both

@@ -24,8 +24,10 @@ bool ScanModel::remove(int id, JobContext& job) {
   if (!scans_.contains(id)) {
     return false;
   }
+  const int group = scans_.at(id).group;
   const bool apart = leave(id);
   scans_.erase(id);
+  settle_without_one(group, job);
   std::erase_if(parts_, [id](const auto& e) { return e.first.first == id || e.first.second == id; });
   bool accused = false;
   for (auto& [other, scan] : scans_) {
@@ -45,6 +47,18 @@ bool ScanModel::remove(int id, JobContext& job) {
   return true;
 }
 
+void ScanModel::settle_without_one(int group, JobContext& job) {
+  const std::vector<int> rest = members(group);
+  if (measurements(rest) > 1) {
+    is_unsettled_ = true;
+    return;
+  }
+  settle_group(group, job);
+  for (const int id : rest) {
+    judge(id);
+  }
+}
+
 bool ScanModel::leave(int id) {
   Scan& scan = scans_.at(id);
   const int group = scan.group;
@@ -52,6 +66,7 @@ bool ScanModel::leave(int id) {
     make_whole(member);  // what was left out followed from where all of them were
   }
   scan.group = next_group_++;
+  scan.covariance.setZero();
   std::erase_if(pairs_, [&](const auto& e) { return e.first.first == id || e.first.second == id; });
   std::vector<std::vector<int>> pieces = pieces_of(group);
   if (pieces.size() < 2) {
@@ -60,8 +75,12 @@ bool ScanModel::leave(int id) {
   // Groups that were joined by one scan may overlap in others, which nobody measured as long as they held.
   measure_between(pieces);
   pieces = pieces_of(group);
+  is_unsettled_ = true;
   for (std::size_t k = 1; k < pieces.size(); ++k) {
     const int own = next_group_++;
+    if (pieces[k].size() == 1) {
+      scans_.at(pieces[k].front()).covariance.setZero();
+    }
     for (const int member : pieces[k]) {
       Scan& apart = scans_.at(member);
       apart.group = own;

@@ -69,6 +69,9 @@ Status ScanModel::relax_group(int group, const JobContext& job) {
   std::vector<int> ids = all;
   std::erase_if(ids, [&](int id) { return whole_among(all, id).has_value(); });
   if (ids.size() < 2) {
+    for (const int id : ids) {
+      scans_.at(id).covariance.setZero();  // by itself it is the frame
+    }
     place_parts(all);
     return {};
   }
@@ -153,10 +156,12 @@ std::optional<ScanModel::InGroup> ScanModel::in_group(int id) {
 
 void ScanModel::judge(int id) {
   const std::optional<InGroup> placed = in_group(id);
+  Scan& scan = scans_.at(id);
   if (!placed) {
+    scan.rms_mm = 0;
+    scan.overlap = 0;
     return;
   }
-  Scan& scan = scans_.at(id);
   const PoseEvidence both = placed->fit.both();
   scan.rms_mm = both.close > 0 ? std::sqrt(both.sum_r2_mm2 / both.close) : 0.0;
   scan.overlap = std::max(placed->fit.overlap, placed->fit.best_pair_overlap);

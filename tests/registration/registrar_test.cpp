@@ -440,6 +440,32 @@ TEST(Registrar, WhatOverlapsStaysWhenTheScanThatJoinedItIsTakenOut) {
   EXPECT_THAT(scans.registered(), ElementsAre(0, 1));
 }
 
+/// The two have a strip in common, and the third held both.
+TEST(Registrar, WhatTheScanTakenOutSaidOfTheOthersMakesThemNoSurer) {
+  Bridged scans(-2);
+  const double with_it_mm = scans.registrar.poses()[1].sigma_mm;
+  ASSERT_TRUE(scans.registrar.remove(2, scans.job));
+  ASSERT_TRUE(scans.registrar.finalize(scans.job));
+  EXPECT_GT(scans.registrar.poses()[1].sigma_mm, 1.5 * with_it_mm);
+}
+
+TEST(Registrar, AScanThatIsLeftAloneIsMeasuredAgainstNothing) {
+  const auto surface = bumpy(18);
+  Registrar registrar;
+  JobContext job;
+  registrar.add(3, share(scan_field(surface, {}, {})), nullptr, job);
+  const ScanPose beside =
+      registrar.add(7, share(scan_field(surface, pose_of(0, 5, 10, {0, 0, 0}), {.seed = 2})), nullptr, job);
+  ASSERT_GT(beside.sigma_mm, 0.0);
+  ASSERT_GT(beside.overlap, 0.5);
+  ASSERT_TRUE(registrar.remove(3, job));
+  const ScanPose alone = registrar.poses().front();
+  EXPECT_EQ(alone.status, PoseStatus::kRegistered);
+  EXPECT_EQ(alone.sigma_mm, 0.0);
+  EXPECT_EQ(alone.overlap, 0.0);
+  EXPECT_EQ(alone.rms_mm, 0.0);
+}
+
 TEST(Registrar, APoseThatLeadsNowhereIsToldAndABetterOneBringsAllBack) {
   Bridged scans(0.5);
   const RigidTransform before = scans.registrar.poses()[2].model_from_scanner;
