@@ -106,6 +106,32 @@ quit
   EXPECT_GT(unlike(curvature, test::read_png(in("opening.png"))), 0.0005) << "other bars";
 }
 
+TEST_F(ViewerPanels, AFieldThatIsNotKnownHasNotTheColoursOfTheOneBefore) {
+  const auto outcome = play(R"(wait wedges 60
+wait whole
+wait idle
+screenshot clay.png
+click overlay
+click overlay.Mean curvature, 1/mm
+wait legend
+wait idle
+wait whole
+screenshot curvature.png
+click overlay
+click overlay.Integral invariant
+wait stop
+click stop
+wait idle 60
+wait whole
+screenshot stopped.png
+quit
+)");
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const Image stopped = test::read_png(in("stopped.png"));
+  EXPECT_GT(unlike(test::read_png(in("curvature.png")), stopped), 0.1);
+  EXPECT_LT(unlike(test::read_png(in("clay.png")), stopped), 0.02);
+}
+
 TEST_F(ViewerPanels, WhatIsDoubtedInTheWedgesStandsAboveTheirTable) {
   std::ifstream file(in("tablet.wedges.json"));
   std::string text{std::istreambuf_iterator<char>(file), {}};

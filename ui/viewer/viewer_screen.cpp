@@ -72,7 +72,11 @@ void ViewerScreen::take_state(UiContext& ui) {
     give_up_picture();
     wedge_ = -1;
     look_at(Face::kObverse);
-    if (!tells(prepared_.shown(), look_.overlay)) {
+    if (field_ && field_ != MeshField::kOpenness && !state_.fields.contains(*field_)) {
+      field_.reset();  // nobody has asked for it of this mesh
+    }
+    // The numbers that were shown went with the mesh that they were of.
+    if (look_.overlay == Overlay::kValue || !tells(prepared_.shown(), look_.overlay)) {
       look_.overlay = Overlay::kClay;
     }
     if (!prepared_.shown().colours.empty() && look_.overlay == Overlay::kClay) {
@@ -100,6 +104,8 @@ void ViewerScreen::take_state(UiContext& ui) {
       look_.value_range = shown_range(*values);
       look_.overlay = Overlay::kValue;
       shown_values_ = values;
+    } else if (!values && state_.stage.empty() && !openness_due_) {
+      field_.reset();  // it was stopped, or there is none of such a mesh
     }
   }
   ui.facts.insert("shown");

@@ -117,7 +117,7 @@ class ViewerScreen {
   PreparedMesh prepared_;
   bool openness_due_ = false;  ///< to be asked for once the mesh has been seen
   std::shared_ptr<const std::vector<float>> shown_openness_, shown_values_;
-  std::optional<MeshField> field_;  ///< that the overlay shows
+  std::optional<MeshField> field_;  ///< that the overlay shows, or will as soon as it is known
   Tool tool_ = Tool::kTurn;
   std::vector<Eigen::Vector2f> clicked_px_;  ///< places that are read off once the whole surface stands there
   std::vector<Eigen::Vector3f> tape_;        ///< up to two places
