@@ -259,6 +259,48 @@ TEST_F(MeshInput, APictureOfAnOverlayHasItsLegendAboveTheSurface) {
   EXPECT_GT(drawn("plate_600dpi_02.png"), 500);
 }
 
+/// A plate of 100 x 60 mm in waves.
+std::string wavy_plate() {
+  constexpr int kRows = 60;
+  constexpr int kCols = 100;
+  std::string out;
+  for (int r = 0; r <= kRows; ++r) {
+    for (int c = 0; c <= kCols; ++c) {
+      out += "v " + std::to_string(c) + " " + std::to_string(r) + " " +
+             std::to_string(2 * std::sin(0.5 * c) * std::sin(0.5 * r)) + "\n";
+    }
+  }
+  const auto at = [](int row, int col) { return std::to_string(1 + row * (kCols + 1) + col); };
+  for (int r = 0; r < kRows; ++r) {
+    for (int c = 0; c < kCols; ++c) {
+      out += "f " + at(r, c) + " " + at(r, c + 1) + " " + at(r + 1, c + 1) + "\nf " + at(r, c) + " " +
+             at(r + 1, c + 1) + " " + at(r + 1, c) + "\n";
+    }
+  }
+  return out;
+}
+
+/// Forty tiles; other colours are chosen while the first of them are drawn.
+TEST_F(MeshInput, APictureIsOfOneFieldWhateverIsChosenMeanwhile) {
+  const auto before = std::filesystem::current_path();
+  std::filesystem::current_path(folder_.path());
+  const Outcome outcome =
+      look_at("plate.obj", wavy_plate(),
+              "resize 1024 900\nwait whole\nwait idle\nclick overlay\n"
+              "click overlay.Mean curvature, 1/mm\nwait legend\nwait idle\nclick overlay\n"
+              "click overlay.Openness\nwait legend\nclick dpi\nkey selectall\ntype 900\nkey enter\n"
+              "wait whole\nclick keep-picture\nclick overlay\nclick overlay.Mean curvature, 1/mm\n"
+              "wait picture-kept\nwait legend\nclick overlay\nclick overlay.Openness\nwait legend\n"
+              "wait whole\nclick keep-picture\npause 0.1\nwait picture-kept\nquit\n");
+  std::filesystem::current_path(before);
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const Image disturbed = test::read_png(folder_.path() / "plate_900dpi_01.png");
+  const Image alone = test::read_png(folder_.path() / "plate_900dpi_02.png");
+  ASSERT_GT(alone.width, 3000);
+  EXPECT_EQ(disturbed.width, alone.width);
+  EXPECT_TRUE(disturbed.bytes == alone.bytes) << "its last tiles show something else";
+}
+
 TEST_F(MeshInput, TwoSideBySideTurnTogetherOrAlone) {
   std::ofstream(folder_.path() / "left.obj") << grooved_plate();
   std::ofstream(folder_.path() / "right.obj") << grooved_plate();

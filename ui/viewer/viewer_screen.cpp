@@ -91,14 +91,16 @@ void ViewerScreen::take_state(UiContext& ui) {
     const auto known = state_.fields.find(field);
     return known == state_.fields.end() ? nullptr : known->second;
   };
-  if (const auto openness = field_values(MeshField::kOpenness); openness && openness != shown_openness_) {
+  // What a picture that is kept is drawn from stays until the last of its tiles.
+  if (const auto openness = field_values(MeshField::kOpenness);
+      openness && openness != shown_openness_ && !still_) {
     const TimedWork timed(ui.watch, "ambient occlusion to the graphics card");
     set_openness(prepared_.shown(), *openness);
     surface_.set_traits(prepared_.shown().traits);
     shown_openness_ = openness;
   }
   if (field_) {
-    if (const auto values = field_values(*field_); values && values != shown_values_) {
+    if (const auto values = field_values(*field_); values && values != shown_values_ && !still_) {
       const TimedWork timed(ui.watch, "an overlay to the graphics card");
       surface_.set_values(of_shown(prepared_.shown(), *values));
       look_.value_range = shown_range(*values);
