@@ -10,6 +10,7 @@
 #include "analysis/vertex_geometry.h"
 #include "core/tablet_frame.h"
 #include "core/thread_priority.h"
+#include "formats/corrections_json.h"
 #include "station/analysis.h"
 #include "station/mesh_to_view.h"
 #include "station/place_outside.h"
@@ -201,11 +202,30 @@ void MeshViewing::open(const fs::path& file) {
 void MeshViewing::show(std::shared_ptr<const Mesh> mesh, const RigidTransform& tablet_from_model,
                        const fs::path& wedges_file) {
   ask([this, mesh = std::move(mesh), tablet_from_model, wedges_file] {
-    take_mesh(mesh, tablet_from_model, {});
+    const bool known = is_known(mesh, wedges_file);
+    if (!known) {
+      take_mesh(mesh, tablet_from_model, {});
+    }
     take_label_of_session(wedges_file.parent_path().parent_path());
-    take_corrections(wedges_file, true);
+    if (!known) {
+      take_corrections(wedges_file, true);
+    }
     take_selections(wedges_file.parent_path() / "selections.json");
   });
+}
+
+bool MeshViewing::is_known(const std::shared_ptr<const Mesh>& of_session, const fs::path& wedges_file) const {
+  std::error_code error;
+  if (!in_session_ || wedges_file_ != wedges_file || fs::exists(wedges_file, error)) {
+    return false;
+  }
+  const Result<CorrectionFile> said = read_corrections(corrections_file_of(wedges_file));
+  if (!said ||
+      corrections_digest(said->corrections) != corrections_digest(analysis_options_.wedges.corrections)) {
+    return false;
+  }
+  const std::scoped_lock lock(mutex_);
+  return state_.mesh != nullptr && state_.mesh == of_session && !state_.is_part;
 }
 
 void MeshViewing::take_label_of_session(const fs::path& session) {

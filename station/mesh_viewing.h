@@ -68,7 +68,8 @@ class MeshViewing {
   /// of_another_mesh(). No more: a field takes all cores, and who looks at a mesh wants to see it first.
   void open(const std::filesystem::path& file);
   /// Looks at the mesh of a session, which is there already: what is kept of it says what the session says of
-  /// its tablet.
+  /// its tablet. Where it is looked at already, what was worked out of it stays, its wedges above all, which
+  /// nobody writes before the session is stitched or exported.
   void show(std::shared_ptr<const Mesh> mesh, const RigidTransform& tablet_from_model,
             const std::filesystem::path& wedges_file);
   void want(MeshField field);  ///< works it out unless it is there
@@ -117,6 +118,9 @@ class MeshViewing {
   void take_mesh(std::shared_ptr<const Mesh> mesh, const RigidTransform& tablet_from_model,
                  const std::string& name);
   void take_label_of_session(const std::filesystem::path& session);
+  /// It is looked at, and what is kept of its wedges is what is known of them here.
+  [[nodiscard]] bool is_known(const std::shared_ptr<const Mesh>& of_session,
+                              const std::filesystem::path& wedges_file) const;
   void take_selections(const std::filesystem::path& file);
   void take_corrections(const std::filesystem::path& wedges_file, bool in_session);
   void doubt_mesh(std::vector<Error> doubts);

@@ -100,6 +100,37 @@ TEST_F(MeshViewingCorrections, WhatIsSaidOfASessionsMeshIsKeptWithItsWedges) {
   EXPECT_EQ(Viewer(mesh_).state().corrections, 1U);
 }
 
+TEST_F(MeshViewingCorrections, WedgesOfASessionsMeshStayWhereItIsLookedAtAgain) {
+  const auto model = std::make_shared<const Mesh>(*tablet_);
+  const fs::path wedges = folder_.path() / "analysis" / "wedges.json";
+  MeshViewing viewing([] {});
+  const auto look = [&](const std::shared_ptr<const Mesh>& at) {
+    viewing.show(at, {}, wedges);
+    test::settle(viewing);
+  };
+  look(model);
+  viewing.analyse();
+  test::settle(viewing);
+  WedgeCorrection gone;
+  gone.at_mm = {wedges_mm_[0]};
+  viewing.correct(gone);
+  test::settle(viewing);
+  const ViewedMesh before = viewing.state();
+  ASSERT_TRUE(before.wedges);
+  ASSERT_EQ(before.corrections, 1U);
+  look(model);
+  EXPECT_EQ(viewing.state().wedges, before.wedges) << "they would be measured again";
+  EXPECT_EQ(viewing.state().number, before.number);
+  EXPECT_EQ(viewing.state().corrections, 1U);
+  // Not where another program has taken the correction back, nor of another model.
+  ASSERT_TRUE(write_corrections(corrections_file_of(wedges), {"model.ply", {}}));
+  look(model);
+  EXPECT_FALSE(viewing.state().wedges);
+  EXPECT_EQ(viewing.state().corrections, 0U);
+  look(std::make_shared<const Mesh>(*tablet_));
+  EXPECT_EQ(viewing.state().number, before.number + 2);
+}
+
 TEST_F(MeshViewingCorrections, AnothersWedgesInTheFolderAreLeftAlone) {
   const JobContext job;
   const Result<Analysis> analysis = analyze_mesh(*tablet_, {}, job);
