@@ -294,9 +294,11 @@ TEST(Statement, AScanThatWasSetAsideIsNamedAndNoOther) {
   EXPECT_EQ(s.headline, "Scan 5 is set aside: scan again");
   EXPECT_THAT(s.detail, HasSubstr("Something was in the way"));
   EXPECT_FALSE(s.may_point) << "there is nothing to point at";
+  EXPECT_FALSE(s.may_undo) << "the key would take out scan 4, which is good";
   EXPECT_THAT(statement_of(state, true, Language::kGerman).detail, HasSubstr("wo auch Scan 4 hinsah"));
-  // One that the operator took out is nothing to ask about.
+  // One that the operator took out is nothing to ask about, and the one before it may go too.
   state.scans.back().set_aside = false;
+  EXPECT_TRUE(statement_of(state, true, Language::kEnglish).may_undo);
   EXPECT_EQ(statement_of(state, true, Language::kEnglish).headline.find("unsure"), std::string::npos);
 }
 

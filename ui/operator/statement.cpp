@@ -135,6 +135,11 @@ const GroupApart* group_of(const LiveState& state, int scan) {
   return found != state.red_map->apart.end() ? &*found : nullptr;
 }
 
+/// By the run that goes on: the operator did not take it out.
+bool newest_is_set_aside(const LiveState& state) {
+  return state.phase != LivePhase::kStill && !state.scans.empty() && state.scans.back().set_aside;
+}
+
 /// The last scan is not taken up: it was set aside, or it lies nowhere for certain. False where it does.
 bool say_not_taken_up(Statement& out, const LiveState& state, Language language) {
   const LiveScan* last = newest_standing(state);
@@ -302,10 +307,11 @@ void say_still(Statement& out, const LiveState& state, bool has_device, Wording 
 Statement statement_of(const LiveState& state, bool has_device, Wording wording) {
   const Language language = wording.language;
   Statement out;
-  // Nor while a scan comes in: the key would take the one before it. What is signed goes by a click only.
-  out.may_undo = newest_standing(state) != nullptr && state.phase != LivePhase::kReading &&
-                 state.phase != LivePhase::kScanning && state.phase != LivePhase::kSigning &&
-                 state.phase != LivePhase::kPacking && has_device &&
+  // Nor while a scan comes in, or when the newest is out by itself: the key would take the one before it.
+  // What is signed goes by a click only.
+  out.may_undo = newest_standing(state) != nullptr && !newest_is_set_aside(state) &&
+                 state.phase != LivePhase::kReading && state.phase != LivePhase::kScanning &&
+                 state.phase != LivePhase::kSigning && state.phase != LivePhase::kPacking && has_device &&
                  !(state.phase == LivePhase::kStill && state.signed_off);
   out.may_stop =
       state.phase != LivePhase::kStill && !(state.phase == LivePhase::kReading && state.reads_folder);
