@@ -114,7 +114,7 @@ void ViewerScreen::draw_overlay_choice(UiContext& ui) {
       if (ImGui::Selectable(ui.text(choice.text), now == choice.text)) {
         field_ = choice.field;
         shown_values_.reset();
-        look_.overlay = Overlay::kClay;  // until its numbers are there: another field's are not under its name
+        look_.overlay = Overlay::kClay;  // until its numbers are there: another field has its own
         viewing_.want(choice.field);
       }
       ui.target(fmt::format("overlay.{}", text_of(choice.text, Language::kEnglish)));
