@@ -119,6 +119,24 @@ quit
   EXPECT_EQ(again.status, 0) << again.err;
 }
 
+TEST_F(Camera, WhatIsTypedStaysWhileAnotherSettingIsPut) {
+  const Outcome played = play(R"(
+wait idle
+click camera
+wait exposure-good
+click setting.exposure_us
+key selectall
+type 9000
+click setting.flip
+wait setting.flip=true
+click put.exposure_us
+wait setting.exposure_us=9000
+click close-camera
+quit
+)");
+  EXPECT_EQ(played.status, 0) << played.err;
+}
+
 TEST_F(Camera, TheCommandLineSetsTheSame) {
   const std::vector<std::string> environment{"DUBSAR_DRIVER_PATH=" DUBSAR_BINARY_DIR
                                              "/lib/dubsar/test_drivers/window"};

@@ -3,6 +3,7 @@
 #include "ui/operator/camera_dialog.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "ui/operator/setting_widget.h"
 
@@ -14,6 +15,11 @@ constexpr const char* kPopup = "###camera";
 /// Of the hatch, in pixels of the picture.
 constexpr int kHatchPeriod = 6;
 constexpr int kHatchLine = 3;
+
+/// By the click that chooses it; what is typed waits for its button.
+bool is_put_at_once(const SettingInfo& setting) {
+  return setting.type == SettingType::kBool || setting.type == SettingType::kChoice;
+}
 
 }  // namespace
 
@@ -100,13 +106,14 @@ void CameraDialog::draw_settings(UiContext& ui, const DevicePanel& panel) {
       continue;
     }
     const bool changed = setting_widget(ui, name, setting.info, typed);
-    const bool at_once = setting.info.type == SettingType::kBool || setting.info.type == SettingType::kChoice;
+    const bool at_once = is_put_at_once(setting.info);
     bool put = changed && at_once;
     if (!at_once) {
       put = plain_button(ui, fmt::format("put.{}", setting.info.key).c_str(), ui.text(Text::kPutSetting),
                          typed != setting.word);
     }
     if (put) {
+      put_.insert(setting.info.key);
       const bool off = setting.info.type == SettingType::kBool && typed.empty();
       session_.change_setting(setting.info.key, off ? "0" : driver_word(setting.info, typed));
     }
@@ -117,9 +124,33 @@ void CameraDialog::draw_settings(UiContext& ui, const DevicePanel& panel) {
   }
 }
 
+/// The device tells its settings anew whenever one is put. What is typed of another, and not put yet, stays.
+void CameraDialog::take_panel(std::shared_ptr<const DevicePanel> panel) {
+  const std::map<std::string, std::string> typed = std::exchange(typed_, {});
+  const std::set<std::string> put = std::exchange(put_, {});
+  const auto before = std::exchange(panel_, std::move(panel));
+  const bool is_same = before && panel_ && before->uri == panel_->uri;
+  for (std::size_t k = 0; panel_ && k < panel_->settings.size(); ++k) {
+    const DevicePanel::Setting& setting = panel_->settings[k];
+    const std::string& key = setting.info.key;
+    const bool off = setting.info.type == SettingType::kBool && setting.word == "false";
+    typed_[key] = off ? std::string() : setting.word;
+    if (!is_same || is_put_at_once(setting.info) || put.contains(key)) {
+      continue;
+    }
+    const auto known = std::ranges::find_if(
+        before->settings, [&](const DevicePanel::Setting& one) { return one.info.key == key; });
+    const auto word = typed.find(key);
+    if (known != before->settings.end() && word != typed.end() && word->second != known->word) {
+      typed_[key] = word->second;
+    }
+  }
+}
+
 void CameraDialog::draw(UiContext& ui, const LiveState& state) {
   if (opening_) {
     old_notice_ = state.notice;
+    panel_.reset();  // what was typed then and never put is not what is set
   } else if (state.notice != old_notice_) {
     old_notice_.clear();
   }
@@ -133,13 +164,7 @@ void CameraDialog::draw(UiContext& ui, const LiveState& state) {
   }
   session_.watch_camera(true);
   if (state.panel != panel_) {
-    panel_ = state.panel;
-    typed_.clear();
-    for (std::size_t k = 0; panel_ && k < panel_->settings.size(); ++k) {
-      const DevicePanel::Setting& setting = panel_->settings[k];
-      const bool off = setting.info.type == SettingType::kBool && setting.word == "false";
-      typed_[setting.info.key] = off ? std::string() : setting.word;
-    }
+    take_panel(state.panel);
   }
   const float foot = ImGui::GetFrameHeightWithSpacing() + 2 * ImGui::GetTextLineHeightWithSpacing();
   const float right = std::min(ui.px(20), 0.36F * ImGui::GetIO().DisplaySize.x);

@@ -4,6 +4,7 @@
 
 #include <map>
 #include <memory>
+#include <set>
 #include <string>
 
 #include "station/live_session.h"
@@ -22,11 +23,13 @@ class CameraDialog {
  private:
   void draw_view(UiContext& ui, ImVec2 size);
   void draw_settings(UiContext& ui, const DevicePanel& panel);
+  void take_panel(std::shared_ptr<const DevicePanel> panel);
   LiveSession& session_;
   PixelTexture texture_;
   std::shared_ptr<const CameraView> shown_;
   std::shared_ptr<const DevicePanel> panel_;  ///< that `typed_` was taken from
   std::map<std::string, std::string> typed_;  ///< by setting
+  std::set<std::string> put_;                 ///< since the device told its settings
   std::string old_notice_;                    ///< said before the box was opened: of something else
   bool opening_ = false;
   bool open_ = false;
