@@ -140,6 +140,9 @@ bool read_triangles_at_once(PlyBody& body, const PlyElement& face, std::uint64_t
     return false;
   }
   constexpr std::size_t kStride = 1 + 3 * sizeof(std::uint32_t);
+  if (!body.check_claim(face)) {  // the product may be beyond 64 bits, and few again
+    return false;
+  }
   const std::string_view rows = body.ahead(face.count * kStride);
   if (rows.empty()) {
     return false;

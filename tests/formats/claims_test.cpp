@@ -99,6 +99,11 @@ TEST(Claims, MeshesOfATrillionVertices) {
   mesh("faces.ply", head + "element vertex 1\n" + xyz +
                         "element face 1000000000000\nproperty list uchar int vertex_indices\nend_header\n" +
                         std::string(64, '\0'));
+  // So many that their 13 bytes each are 10 bytes beyond what 64 bits count.
+  mesh("wrapped.ply",
+       head + "element vertex 1\n" + xyz +
+           "element face 1418980313362273202\nproperty list uchar int vertex_indices\nend_header\n" +
+           std::string(64, '\0'));
   std::string stl(80, ' ');
   append(stl, std::uint32_t{0xffffffffU});
   mesh("many.stl", stl + std::string(100, '\0'));
