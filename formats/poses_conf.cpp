@@ -23,6 +23,10 @@ constexpr double kLengthTolerance = 1e-3;
 
 Result<std::vector<ScanPose>> parse_conf_poses(std::string_view text, const std::string& where,
                                                double mm_per_unit) {
+  text = without_byte_order_mark(text);
+  if (has_macintosh_lines(text)) {
+    return parse_conf_poses(with_line_feeds(text), where, mm_per_unit);
+  }
   std::vector<ScanPose> poses;
   TextScanner scanner(text);
   while (!scanner.at_end()) {

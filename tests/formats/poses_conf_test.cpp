@@ -29,6 +29,22 @@ TEST(PosesConf, TakesScanPointsIntoTheModel) {
             1e-6);
 }
 
+TEST(PosesConf, LeavesNoPoseOutForAMarkBeforeItOrTheLinesOfAMacintosh) {
+  const std::string first = "bmesh a.ply 0 0 0 0 0 0 1";
+  const std::string second = "bmesh b.ply 0 0 1 0 0 0 1";
+  for (const std::string& text : {"\xEF\xBB\xBF" + first + "\r\n" + second + "\r\n",
+                                  first + "\r" + second + "\r", first + "\r" + second}) {
+    const auto poses = parse_conf_poses(text, "a.conf", 1.0);
+    ASSERT_TRUE(poses) << poses.error().line();
+    ASSERT_EQ(poses->size(), 2U);
+    EXPECT_EQ(poses->front().file, "a.ply");
+    EXPECT_EQ(poses->back().file, "b.ply");
+  }
+  const auto cut = parse_conf_poses(first + "\rbmesh b.ply 0 0 1\r", "a.conf", 1.0);
+  ASSERT_FALSE(cut);
+  EXPECT_THAT(cut.error().line(), HasSubstr("line 2"));
+}
+
 TEST(PosesConf, NamesTheLineThatIsNoPose) {
   for (const char* line :
        {"bmesh a.ply 0 0 0 0 0 0", "bmesh a.ply 0 0 zero 0 0 0 1", "bmesh", "bmesh a.ply 0 0 0 0 0 0 2",
