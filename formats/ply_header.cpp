@@ -153,6 +153,7 @@ std::optional<std::string_view> PlyHeader::info_value(std::string_view key) cons
 }
 
 bool is_ply(std::string_view bytes) {
+  bytes = without_byte_order_mark(bytes);
   return bytes.starts_with("ply") && bytes.size() > 3 &&
          (bytes[3] == '\n' || bytes[3] == '\r' || bytes[3] == ' ' || bytes[3] == '\t');
 }
@@ -167,7 +168,8 @@ Result<PlyHeader> parse_ply_header(std::string_view bytes, const std::string& wh
   const std::string_view head = bytes.substr(0, kMaxPlyHeaderBytes);
   TextScanner scanner(head);
   // Lines of an old Macintosh end with a carriage return alone.
-  const char line_end = head.starts_with("ply\r") && !head.starts_with("ply\r\n") ? '\r' : '\n';
+  const std::string_view first = without_byte_order_mark(head);
+  const char line_end = first.starts_with("ply\r") && !first.starts_with("ply\r\n") ? '\r' : '\n';
   (void)scanner.line(line_end);
   PlyHeader header;
   bool has_format = false;

@@ -52,7 +52,7 @@ struct PlyHeader {
   [[nodiscard]] std::optional<std::string_view> info_value(std::string_view key) const;
 };
 
-/// True when the bytes begin as a PLY file does.
+/// True when the bytes begin as a PLY file does, or so behind a byte order mark.
 [[nodiscard]] bool is_ply(std::string_view bytes);
 
 /// Parses the header (Turk 1994). Lines with a keyword that the format does not know are passed over. Names

@@ -7,6 +7,7 @@
 #include "formats/byte_order.h"
 #include "formats/glb_container.h"
 #include "formats/mesh_formats.h"
+#include "formats/ply_header.h"
 #include "tests/formats/closed_surface.h"
 #include "tests/formats/format_support.h"
 #include "tests/formats/tetrahedron.h"
@@ -308,6 +309,23 @@ TEST(MeshStl, ReadsAscii) {
   ASSERT_TRUE(mesh) << line_of(mesh);
   EXPECT_EQ(mesh->positions.size(), 4U);
   EXPECT_EQ(mesh->faces.size(), 2U);
+}
+
+TEST(MeshPly, AByteOrderMarkIsPassedOver) {
+  const std::string text =
+      "ply\nformat ascii 1.0\nobj_info unit m\nelement vertex 3\nproperty float x\nproperty float y\n"
+      "property float z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n"
+      "0 0 0\n0.01 0 0\n0 0.01 0\n3 0 1 2\n";
+  std::string macintosh = text;
+  std::ranges::replace(macintosh, '\n', '\r');
+  for (const std::string& lines : {text, macintosh}) {
+    const std::string marked = "\xEF\xBB\xBF" + lines;
+    const auto mesh = read_mesh_bytes(marked, "a.ply");
+    ASSERT_TRUE(mesh) << line_of(mesh);
+    EXPECT_EQ(mesh->faces.size(), 1U);
+    EXPECT_FLOAT_EQ(mesh->positions[1].x(), 10);
+    EXPECT_TRUE(states_unit(marked, "a.ply"));
+  }
 }
 
 TEST(MeshStl, ReadsAsciiOfEveryKind) {
