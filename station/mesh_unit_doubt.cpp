@@ -15,7 +15,7 @@
 #include "formats/atomic_file.h"
 #include "formats/mesh_formats.h"
 #include "formats/ply_header.h"
-#include "formats/ply_scan_info.h"
+#include "formats/ply_scan.h"
 
 namespace dubsar {
 
@@ -77,8 +77,7 @@ UnitOfFile unit_of_file(const std::filesystem::path& file) {
     return {};
   }
   const Result<PlyHeader> header = parse_ply_header(*head, file.string());
-  const auto unit = header ? header->info_value(ply_info::kUnit) : std::nullopt;
-  return {unit ? mm_per_unit(*unit).value_or(1) : 1, true, true};
+  return {header ? mm_per_unit_of(*header, file.string()).value_or(1.0) : 1.0, true, true};
 }
 
 /// Of a cloud without faces: around all of its points.

@@ -207,6 +207,20 @@ TEST_F(MeshCommand, AUnitThatNobodySaidIsDoubtedWhereLengthsAreTold) {
   EXPECT_EQ(cut("tent.obj", "0,15,10", "30,15,10", "cut.csv").json()["unit_doubt"], nullptr);
 }
 
+TEST_F(MeshCommand, AUnitThatAHeaderWritesOutIsDoubtedInItsOwnNumbers) {
+  for (const char* unit : {"um", "micrometers", "um (of the scanner)"}) {
+    std::ofstream(at("micro.ply"))
+        << "ply\nformat ascii 1.0\nobj_info unit " << unit
+        << "\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n"
+           "element face 4\nproperty list uchar int vertex_indices\nend_header\n"
+           "0 0 0\n30 0 0\n0 30 0\n0 0 9\n3 0 1 3\n3 1 2 3\n3 2 0 3\n3 0 2 1\n";
+    const Outcome checked = run_command({"mesh", "check", at("micro.ply"), "--json"});
+    EXPECT_EQ(checked.json()["unit_doubt"],
+              "as it stands it is 0.0434 mm large, perhaps its numbers are mm, cm")
+        << unit << ": " << checked.err;
+  }
+}
+
 TEST_F(MeshCommand, APlyDoesNotSayMillimetresOfNumbersThatNobodyKnows) {
   std::ofstream(at("metres.obj")) << "v 0 0 0\nv .03 0 0\nv .03 .03 0\nv 0 .03 0\nv .015 .015 .009\n"
                                      "f 1 2 5\nf 2 3 5\nf 3 4 5\nf 4 1 5\nf 1 3 2\nf 1 4 3\n";
