@@ -68,8 +68,12 @@ Result<GlbChunks> split_glb(std::string_view bytes, const std::string& where) {
   for (int chunk = 0; at + kChunkHeaderBytes <= bytes.size(); ++chunk) {
     const std::uint64_t size = load<std::uint32_t>(bytes.data() + at);
     const auto type = load<std::uint32_t>(bytes.data() + at + 4);
+    const bool fits = size <= bytes.size() - at - kChunkHeaderBytes;
+    if (at >= length && (chunk > 1 || !fits)) {
+      break;  // none of the file's; a length that is too small hides none of the two that are read
+    }
     at += kChunkHeaderBytes;
-    if (size > bytes.size() - at) {
+    if (!fits) {
       return bad_input(where, "chunk " + std::to_string(chunk) + " claims more bytes than are left",
                        kCutShort);
     }
@@ -83,6 +87,7 @@ Result<GlbChunks> split_glb(std::string_view bytes, const std::string& where) {
   if (chunks.json.empty()) {
     return bad_input(where, "its first chunk is not JSON", kCutShort);
   }
+  chunks.rest = bytes.substr(std::max<std::size_t>(at, length));
   return chunks;
 }
 

@@ -15,6 +15,7 @@ namespace dubsar {
 struct GlbChunks {
   std::string_view json;
   std::string_view binary;  ///< empty when there is none
+  std::string_view rest;    ///< what follows the length that the header says
 };
 
 [[nodiscard]] Result<GlbChunks> split_glb(std::string_view bytes, const std::string& where);

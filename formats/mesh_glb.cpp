@@ -9,7 +9,9 @@
 #include <utility>
 #include <vector>
 
+#include "core/log.h"
 #include "core/srgb.h"
+#include "formats/bytes_left_over.h"
 #include "formats/colour_values.h"
 #include "formats/filed_mesh.h"
 #include "formats/gltf_primitive.h"
@@ -244,6 +246,9 @@ Result<FiledMesh> decode_filed_glb(std::string_view bytes, const std::string& wh
   }
   if (reading.textured && options.passed_over != nullptr) {
     *options.passed_over = {kTextureCoordinates};
+  }
+  if (const std::string left_over = bytes_left_over(chunks->rest); !left_over.empty()) {
+    log_warning(Error{ErrorKind::kBadInput, left_over, where, {}}.line());
   }
   mesh.colours.resize(mesh.colours.empty() ? 0 : mesh.positions.size(), kWhite);
   const std::size_t of_file = mesh.positions.size();

@@ -55,6 +55,14 @@ TEST(BytesLeftOver, OfAMeshTheyAreToldOnOneLine) {
   const std::string stl = encode_mesh_stl(tetrahedron());
   EXPECT_EQ(said_of(stl, "a.stl"), "");
   EXPECT_THAT(said_of(stl + stl.substr(stl.size() - 50), "a.stl"), HasSubstr("a.stl: 50 bytes follow"));
+
+  const std::string glb = encode_mesh_glb(tetrahedron(), "t").value();
+  EXPECT_EQ(said_of(glb, "a.glb"), "");
+  EXPECT_THAT(said_of(glb + "a signature, say", "a.glb"), HasSubstr("a.glb: 16 bytes follow"));
+  EXPECT_THAT(said_of(glb + std::string(16, '\0'), "a.glb"), HasSubstr("a.glb: 16 bytes follow"));
+  std::string too_small = glb;  // as a program wrote it that counted the JSON alone
+  too_small.replace(8, 4, std::string("\x0c\0\0\0", 4));
+  EXPECT_EQ(said_of(too_small, "a.glb"), "");
 }
 
 TEST(BytesLeftOver, OfAScanTheyAreRemarked) {
