@@ -88,6 +88,10 @@ Result<GrayImage> parse_pgm(std::string_view bytes, const std::string& where) {
   }
   ++at;  // one blank ends the header
   const auto count = static_cast<std::size_t>(*width) * static_cast<std::size_t>(*height);
+  // Or two, of lines as Windows has them: then there is one byte more than there are pixels.
+  if (at + count < bytes.size() && bytes.substr(at - 1, 2) == "\r\n") {
+    ++at;
+  }
   if (at > bytes.size() || bytes.size() - at < count) {
     return bad_input(where, "the picture ends too soon", kMend);
   }

@@ -292,6 +292,10 @@ TEST(GrayFile, PngAndPgm) {
   ASSERT_TRUE(parse_gray(pgm, "a.pgm").has_value());
   EXPECT_EQ(parse_gray(pgm, "a.pgm")->pixels, image.pixels);
   EXPECT_FALSE(parse_gray(pgm.substr(0, pgm.size() - 1), "a.pgm").has_value());
+  const std::string windows = "P5\r\n# a comment\r\n37 21\r\n255\r\n" + pgm.substr(pgm.find("255\n") + 4);
+  EXPECT_EQ(parse_gray(windows, "a.pgm").value().pixels, image.pixels) << "shifted by a byte";
+  const std::string begins_so = "P5 2 1 255\r\n\x05";  // its first pixel is a line feed
+  EXPECT_EQ(parse_gray(begins_so, "a.pgm").value().pixels, (std::vector<std::uint8_t>{10, 5}));
   EXPECT_FALSE(parse_gray("P5 99999 99999 255\n", "a.pgm").has_value());
   EXPECT_FALSE(parse_gray("GIF89a", "a.gif").has_value());
   EXPECT_FALSE(parse_gray("\xff\xd8\xff\xe0 rubbish", "a.jpg").has_value());
