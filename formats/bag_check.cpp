@@ -210,7 +210,7 @@ class Check {
   void check_fetch(const std::map<std::string, std::size_t>& listed) {
     const std::optional<std::string> text = text_of("fetch.txt");
     const Result<std::vector<std::string>> fetched =
-        text ? parse_bag_fetch(*text, "fetch.txt") : std::vector<std::string>();
+        text ? parse_bag_fetch(*text, declaration_, "fetch.txt") : std::vector<std::string>();
     if (!fetched) {
       report_.damaged.push_back(fetched.error());
       return;

@@ -53,8 +53,8 @@ std::unexpected<Error> bad_line(const std::string& where, std::size_t line, cons
 }
 
 /// A path inside the bag in its plain form, or nothing where it leads elsewhere.
-std::optional<std::string> plain_path(std::string_view encoded) {
-  const std::string decoded = decode_bag_path(encoded);
+std::optional<std::string> plain_path(std::string_view encoded, const BagDeclaration& declaration) {
+  const std::string decoded = decode_bag_path(encoded, declaration);
   const std::filesystem::path path(decoded);
   if (decoded.empty() || decoded.find('\0') != std::string::npos || decoded.front() == '~' ||
       path.is_absolute() || std::ranges::find(path, std::filesystem::path("..")) != path.end()) {
@@ -66,11 +66,12 @@ std::optional<std::string> plain_path(std::string_view encoded) {
 
 }  // namespace
 
-std::string decode_bag_path(std::string_view text) {
+std::string decode_bag_path(std::string_view text, BagDeclaration declaration) {
+  const bool percent = declaration.at_least(1, 0);
   std::string out;
   for (std::size_t i = 0; i < text.size(); ++i) {
     const std::string code = text[i] == '%' ? lower(text.substr(i + 1, 2)) : std::string();
-    const char decoded = code == "0a" ? '\n' : code == "0d" ? '\r' : code == "25" ? '%' : '\0';
+    const char decoded = code == "0a" ? '\n' : code == "0d" ? '\r' : percent && code == "25" ? '%' : '\0';
     if (decoded != '\0') {
       out += decoded;
       i += 2;
@@ -137,7 +138,7 @@ Result<std::vector<BagManifestLine>> parse_bag_manifest(std::string_view text,
     if (!digits || path.empty()) {
       return bad_line(where, i, "is no checksum and path");
     }
-    std::optional<std::string> plain = plain_path(path);
+    std::optional<std::string> plain = plain_path(path, declaration);
     if (!plain) {
       return bad_line(where, i, "names a place outside the bag: " + std::string(path.substr(0, 80)));
     }
@@ -150,7 +151,8 @@ Result<std::vector<BagManifestLine>> parse_bag_manifest(std::string_view text,
   return out;
 }
 
-Result<std::vector<std::string>> parse_bag_fetch(std::string_view text, const std::string& where) {
+Result<std::vector<std::string>> parse_bag_fetch(std::string_view text, const BagDeclaration& declaration,
+                                                 const std::string& where) {
   std::vector<std::string> out;
   const std::vector<std::string_view> lines = lines_of(text);
   for (std::size_t i = 0; i < lines.size(); ++i) {
@@ -161,7 +163,7 @@ Result<std::vector<std::string>> parse_bag_fetch(std::string_view text, const st
     for (int word = 0; word < 2; ++word) {  // URL and length
       rest = trimmed(rest.substr(std::min(rest.find_first_of(" \t"), rest.size())));
     }
-    std::optional<std::string> plain = plain_path(rest);
+    std::optional<std::string> plain = plain_path(rest, declaration);
     if (!plain || !plain->starts_with("data/")) {
       return bad_line(where, i, "is no URL, length and path under data/");
     }

@@ -39,6 +39,7 @@ struct BagManifestLine {
 
 /// The paths that fetch.txt says are to be fetched.
 [[nodiscard]] Result<std::vector<std::string>> parse_bag_fetch(std::string_view text,
+                                                               const BagDeclaration& declaration,
                                                                const std::string& where);
 
 struct BagOxum {
@@ -50,7 +51,8 @@ struct BagOxum {
 [[nodiscard]] Result<std::optional<BagOxum>> parse_bag_oxum(std::string_view bag_info,
                                                             const std::string& where);
 
-/// The path of a bag as it stands in a manifest: %, CR and LF percent-encoded; and back.
-[[nodiscard]] std::string decode_bag_path(std::string_view text);
+/// The path of a bag from how it stands in a manifest: CR and LF percent-encoded, and from version 1.0 on %
+/// itself.
+[[nodiscard]] std::string decode_bag_path(std::string_view text, BagDeclaration declaration = {1, 0});
 
 }  // namespace dubsar

@@ -20,8 +20,10 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       (void)parse_bag_declaration(rest, "bagit.txt");
       break;
     case 'f':
-      if (const auto paths = parse_bag_fetch(rest, "fetch.txt")) {
-        std::ranges::for_each(*paths, inside);
+      for (const BagDeclaration declaration : {BagDeclaration{1, 0}, BagDeclaration{0, 97}}) {
+        if (const auto paths = parse_bag_fetch(rest, declaration, "fetch.txt")) {
+          std::ranges::for_each(*paths, inside);
+        }
       }
       break;
     case 'o':

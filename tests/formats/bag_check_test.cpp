@@ -212,6 +212,20 @@ TEST_F(BagTest, OldBagsAndUnknownSumsAreUnderstood) {
   EXPECT_THAT(faults(), Contains(HasSubstr("without a manifest of SHA-2, SHA-1 or MD5")));
 }
 
+/// As of a name that was taken from an address twice encoded.
+TEST_F(BagTest, BeforeVersionOneAPercentSignStandsForItself) {
+  fs::remove(bag() / "tagmanifest-sha512.txt");
+  fs::remove(bag() / "manifest-sha256.txt");
+  fs::rename(bag() / "data/master.ply", bag() / "data/my%2520master.ply");
+  put("manifest-sha512.txt", line("data/my%2520master.ply", sum512("data/my%2520master.ply")) +
+                                 line("data/rückseite 100%.png", sum512("data/rückseite 100%.png")));
+  put("fetch.txt", "https://example.org/a - data/my%2520master.ply\n");
+  put("bagit.txt", "BagIt-Version: 0.97\nTag-File-Character-Encoding: UTF-8\n");
+  EXPECT_THAT(faults(), IsEmpty());
+  put("bagit.txt", "BagIt-Version: 1.0\nTag-File-Character-Encoding: UTF-8\n");
+  EXPECT_THAT(faults(), Contains("data/my%20master.ply: not here: fetch.txt says where it is"));
+}
+
 /// RFC 8493, section 3: of a valid bag every checksum of every manifest is verified.
 TEST_F(BagTest, OlderSumsCountBesideBetterOnes) {
   const std::string picture = line("data/rückseite 100%25.png", digest_hex(Digest::kMd5, "a picture"));
@@ -258,6 +272,7 @@ TEST_F(BagTest, WhatIsStillToBeFetchedIsMissing) {
 TEST(BagText, PathsAreDecodedOnce) {
   EXPECT_EQ(decode_bag_path("a%0Ab%0dc%2525%20"), "a\nb\rc%25%20");
   EXPECT_EQ(decode_bag_path("%2"), "%2");
+  EXPECT_EQ(decode_bag_path("a%0Ab%0dc%2525%20", {0, 97}), "a\nb\rc%2525%20");
 }
 
 }  // namespace
