@@ -49,6 +49,12 @@ list-tablets: lost.lock: $without
 list-tablets: $odd: $without
 list-tablets: lost.sums: $without
 list-tablets: lost: $without" ] || fail "list-tablets says: $said"
+# So it is for every awk: gawk goes by the characters of the locale, mawk by bytes.
+whichever_awk() { [ "${LC_ALL-}" = C ] && command "$(type -P gawk awk | head -n 1)" "$@"; }
+again=$(awk() { whichever_awk "$@"; } && export -f awk whichever_awk && "$workflows/list-tablets" "$folder" 2>"$folder/said") ||
+  fail "list-tablets, with names that are no text, leaves awk to the locale"
+[ "$again" = "$listed" ] || fail "list-tablets, by whichever awk: $again"
+[ "$(LC_ALL=C sort "$folder/said")" = "$said" ] || fail "list-tablets says, by whichever awk: $(cat "$folder/said")"
 rm -r "$folder"/lost.*
 listed=$("$workflows/list-tablets" "$folder/session")
 [ "$listed" = . ] || fail "list-tablets of a session: $listed"
