@@ -14,6 +14,10 @@ touch "$folder/session/session.sqlite" "$folder/session/grids/model.ply" "$folde
 
 listed=$("$workflows/list-tablets" "$folder")
 [ "$listed" = $'museum/a b\nmuseum/c\nsession' ] || fail "list-tablets: $listed"
+# By its name it is the one that lies here, whatever the shell of who asks looks for folders in.
+mkdir -p "$folder.far/$(basename "$folder")"
+again=$(cd "$folder/.." && CDPATH=$folder.far:. "$workflows/list-tablets" "$(basename "$folder")")
+[ "$again" = "$listed" ] || fail "list-tablets with a CDPATH: $again"
 # At any depth, below folders of any name, and through links; of a session and its results nothing but the session.
 mkdir -p "$folder"/export/one "$folder"/sub/mesh/two "$folder"/three "$folder"/session/{mesh,sub/package} \
   "$folder"/session.results/package "$folder"/lost/mesh "$folder"/.hidden "$folder.far/session"
