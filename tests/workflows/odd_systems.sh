@@ -56,6 +56,10 @@ expect 0 'was moved or copied from' "$folder/moved/tools/build"
 expect 0 '' "$folder/moved/tools/build"
 [ "$(grep -c preset "$folder/moved/asked")" = 2 ] || fail "a clone that stays was configured again"
 
+# A disk that takes no folder for the session.
+stub mkdir "case \$* in *runs/[0-9]*) echo 'mkdir: No space left on device' >&2; exit 1 ;; esac; exec $(command -v mkdir) \"\$@\""
+expect 4 'run: mkdir: No space left on device' "$(command -v timeout)" 20 "$folder/moved/run"
+rm "$folder/stubs/mkdir"
 mkdir "$folder/collection"
 expect 2 'submit-slurm: sbatch is missing' "$folder/moved/workflows/submit-slurm" "$folder/collection"
 [ ! -e "$folder/collection/log" ] || fail "submit-slurm leaves a list where there is no Slurm"
