@@ -25,6 +25,21 @@ run "$dubsar" simulate scans --tablet "$2/tablet/tablet.ply" --views 8 --spacing
 status=0
 run "$prefix/bin/dubsar-station" --sesion x 2>/dev/null || status=$?
 [ $status = 2 ] || fail "dubsar-station takes an option for a session: status $status"
+# A name that is mistyped does not go on with the session that it is typed in. The window that opens is a stub.
+rm -rf "$2/opened" && mkdir -p "$2/opened/bin" "$2/opened/S"
+printf '#!/bin/sh\necho "$@"\n' >"$2/opened/bin/dubsar"
+chmod +x "$2/opened/bin/dubsar"
+touch "$2/opened/S/session.sqlite"
+opened() {
+  (cd "$prefix/opened/S" && run env PATH="$prefix/opened/bin:/usr/bin:/bin" "$prefix/bin/dubsar-station" "$@" 2>&1)
+}
+status=0
+said=$(opened BM_1) || status=$?
+[ $status = 2 ] || fail "dubsar-station opens what is not there: status $status, $said"
+for name in ../S session.sqlite "$prefix/opened/S/session.sqlite"; do
+  said=$(opened "$name") || fail "dubsar-station $name: $said"
+  [[ $said == "station --session "* ]] || fail "dubsar-station $name: $said"
+done
 
 share=$prefix/share
 for file in applications/dubsar.desktop applications/dubsar-mesh.desktop icons/hicolor/scalable/apps/dubsar.svg \
