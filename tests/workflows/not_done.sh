@@ -86,6 +86,22 @@ task "$folder/nowhere" 0
 task "$folder/list" 7
 [ $status = 2 ] || fail "a task without a tablet: status $status"
 
+# Snakemake on a cluster, where nobody has said how many cores there are: its own word for them raises an error.
+threads=$(sed -n 's/^    threads: //p' "$workflows/Snakefile")
+THREADS=$threads python3 - <<'PYTHON' || fail "Snakefile: threads on a cluster: $threads"
+import os
+class Cluster:
+    @property
+    def cores(self):
+        raise RuntimeError("Workflow requires a total number of cores to be defined")
+class Machine:
+    cores = 8
+expression = os.environ["THREADS"]
+assert eval(expression, {"config": {"threads": "2"}, "workflow": Cluster()}) == 2
+assert eval(expression, {"config": {"threads": "2"}, "workflow": Machine()}) == 2
+assert eval(expression, {"config": {}, "workflow": Machine()}) == 8
+PYTHON
+
 # A session that is called log is only read, too.
 session log
 ends 0 log
