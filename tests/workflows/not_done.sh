@@ -102,6 +102,17 @@ assert eval(expression, {"config": {"threads": "2"}, "workflow": Machine()}) == 
 assert eval(expression, {"config": {}, "workflow": Machine()}) == 8
 PYTHON
 
+# A name that Snakemake does not take is left out: it would keep all others from being done.
+REFUSAL=$(sed -n '/^def refusal/,/^$/p' "$workflows/Snakefile") python3 - <<'PYTHON' || fail "Snakefile: names that are taken"
+import os
+import re
+exec(os.environ["REFUSAL"])
+for name in (b"BM {b}", b"{ b }", b"a{1,2}/c", b"o\xffd"):
+    assert refusal(os.fsdecode(name)), name
+for name in ("BM 1", "a {b c}", "{}", "}{", "{-}", "ö {"):
+    assert not refusal(name), name
+PYTHON
+
 # A session that is called log is only read, too.
 session log
 ends 0 log
