@@ -38,7 +38,13 @@ ends() {
 
 session a
 ends 0 a
-rm -r "$folder/c/log"
+# By whatever name it goes, what comes of it lies beside it.
+mv "$folder/c/a.results" "$folder/c/log" "$folder"
+ends 0 a//
+[ "$(ls -A "$folder/c") $(ls -A "$folder/c/a") $(ls "$folder/c/log")" = $'a\na.results\nlog session.sqlite a.log' ] ||
+  fail "a session with a slash at its end: $(ls -AR "$folder/c")"
+ends 2 ''
+rm -r "$folder/c/log" "$folder/a.results" "$folder/log"
 mkdir "$folder/c/log"
 ln -s /dev/full "$folder/c/log/a.log"
 ends 4 a
