@@ -4,12 +4,16 @@
 
 #include <png.h>
 
+#include <algorithm>
+#include <array>
+#include <bit>
 #include <cstdint>
 #include <cstring>
 #include <optional>
 #include <vector>
 
 #include "formats/atomic_file.h"
+#include "formats/byte_order.h"
 #include "formats/gray_jpeg.h"
 
 namespace dubsar {
@@ -20,7 +24,28 @@ constexpr std::string_view kPng = "\x89PNG\r\n\x1a\n";
 constexpr std::string_view kJpeg = "\xff\xd8\xff";
 constexpr const char* kMend = "give a whole PNG, JPEG or PGM picture";
 
-Result<GrayImage> parse_png(std::string_view bytes, const std::string& where) {
+/// A PNG without what says of which light its numbers are (ISO/IEC 15948, 11.3.3): by that the library would
+/// bend them for a screen, 64 of linear light to 136.
+std::string without_light(std::string_view png) {
+  constexpr std::size_t kFrame = 12;  // of a chunk: length, type, checksum
+  constexpr std::array<std::string_view, 4> kOfLight = {"gAMA", "cHRM", "iCCP", "sRGB"};
+  std::string out(kPng);
+  std::string_view rest = png.substr(kPng.size());
+  while (rest.size() >= kFrame) {
+    const std::size_t length = load<std::uint32_t>(rest.data(), std::endian::big);
+    if (length > rest.size() - kFrame) {
+      break;
+    }
+    if (std::ranges::find(kOfLight, rest.substr(4, 4)) == kOfLight.end()) {
+      out += rest.substr(0, kFrame + length);
+    }
+    rest.remove_prefix(kFrame + length);
+  }
+  return out += rest;  // of one that is cut short the library says so
+}
+
+Result<GrayImage> parse_png(std::string_view whole, const std::string& where) {
+  const std::string bytes = without_light(whole);
   png_image png{};
   png.version = PNG_IMAGE_VERSION;
   if (png_image_begin_read_from_memory(&png, bytes.data(), bytes.size()) == 0) {

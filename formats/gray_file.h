@@ -15,7 +15,8 @@ namespace dubsar {
 inline constexpr int kMostImagePixels = 100'000'000;
 
 /// A picture as a camera or a program writes it: PNG, JPEG or PGM (P5, 8 bit), told by its first bytes.
-/// Colour becomes luma (ITU-R BT.601), 16 bits become 8. Errors: kBadInput.
+/// Colour becomes luma (ITU-R BT.601), of the numbers as they stand: what a PNG says of their light bends
+/// none. Errors: kBadInput, for a PNG of 16 bits too.
 [[nodiscard]] Result<GrayImage> parse_gray(std::string_view bytes, const std::string& where);
 [[nodiscard]] Result<GrayImage> read_gray(const std::filesystem::path& path);
 

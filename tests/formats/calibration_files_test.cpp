@@ -302,6 +302,18 @@ TEST(GrayFile, PngAndPgm) {
   EXPECT_FALSE(parse_gray("\x89PNG\r\n\x1a\n rubbish", "a.png").has_value());
 }
 
+// Of linear light by its gAMA, as ImageMagick writes LinearGray: 64 of 255 became 136.
+TEST(GrayFile, APngIsReadAsItsNumbersStandWhateverLightTheyAreOf) {
+  constexpr char kFourByOne[] =
+      "\x89\x50\x4e\x47\x0d\x0a\x1a\x0a\x00\x00\x00\x0d\x49\x48\x44\x52\x00\x00\x00\x04\x00\x00"
+      "\x00\x01\x08\x00\x00\x00\x00\xdc\x57\x50\x11\x00\x00\x00\x04\x67\x41\x4d\x41\x00\x01\x86"
+      "\xa0\x31\xe8\x96\x5f\x00\x00\x00\x0d\x49\x44\x41\x54\x78\x9c\x63\xe0\x72\x68\x38\x01\x00"
+      "\x02\xb5\x01\x93\xa1\x0b\xbc\xc4\x00\x00\x00\x00\x49\x45\x4e\x44\xae\x42\x60\x82";
+  const Result<GrayImage> read = parse_gray({kFourByOne, sizeof kFourByOne - 1}, "a.png");
+  ASSERT_TRUE(read.has_value()) << read.error().line();
+  EXPECT_EQ(read->pixels, (std::vector<std::uint8_t>{10, 64, 128, 200}));
+}
+
 // Read as 8 bits it would go through a curve: 64 of 255 became 136.
 TEST(GrayFile, APngOfSixteenBitsIsRefused) {
   constexpr char kOneByOne[] =
