@@ -216,7 +216,9 @@ bool ScanModel::follow_hint(int id, JobContext& job) {
       return false;
     }
     // It stands in the wrong place: out of its group, and in again where the hint says.
+    const int left = scan.group;
     apart = leave(found->first);
+    settle_without_one(left, job);
     scan.leads.clear();
   }
   const bool followed = join_group(found->first, on->second.group, job);

@@ -449,6 +449,19 @@ TEST(Registrar, WhatTheScanTakenOutSaidOfTheOthersMakesThemNoSurer) {
   EXPECT_GT(scans.registrar.poses()[1].sigma_mm, 1.5 * with_it_mm);
 }
 
+/// The same where the operator's word takes it out of its place.
+TEST(Registrar, WhatAScanSaidThatItsHintContradictsMakesTheOthersNoSurer) {
+  Bridged scans(-2);
+  const double with_it_mm = scans.registrar.poses()[1].sigma_mm;
+  PoseHint elsewhere;
+  elsewhere.on = 0;
+  elsewhere.on_from_scanner = pose_of(0, 90, 0, {40, 40, 0});
+  ASSERT_TRUE(scans.registrar.set_hint(2, elsewhere, scans.job));
+  ASSERT_TRUE(scans.registrar.finalize(scans.job));
+  EXPECT_NE(scans.registrar.poses()[2].status, PoseStatus::kRegistered);
+  EXPECT_GT(scans.registrar.poses()[1].sigma_mm, 1.5 * with_it_mm);
+}
+
 TEST(Registrar, AScanThatIsLeftAloneIsMeasuredAgainstNothing) {
   const auto surface = bumpy(18);
   Registrar registrar;
