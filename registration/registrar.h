@@ -74,7 +74,8 @@ class Registrar {
   /// What stood outside for it is tried without it, at once; when the job is cancelled, by finalize().
   void clear_hint(int id, JobContext& job);
   /// Locks a scan where it is, or unlocks it. False when there is none that could be registered. A scan with
-  /// copies is fixed as long as one of them is locked; each of them says only of its own lock.
+  /// copies is fixed as long as one of them is locked; each of them says only of its own lock. What is
+  /// unlocked stays where it is until finalize(), which asks the surfaces how surely it lies there.
   bool set_locked(int id, bool locked);
   /// Locks a registered scan where it is, when that is the pose to within what its surface leaves open.
   LockOutcome lock_near(int id, const RigidTransform& model_from_scanner);

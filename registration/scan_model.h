@@ -271,7 +271,7 @@ class ScanModel {
   RegistrationOptions options_;
   double scale_mm_ = 0;
   double first_spacing_mm_ = 0;
-  /// A relaxation was broken off, or a scan was taken out since: finalize() makes up for it.
+  /// A relaxation was broken off, or a scan was taken out or unlocked since: finalize() makes up for it.
   bool is_unsettled_ = false;
   int next_group_ = 0;
   std::map<int, Scan> scans_;

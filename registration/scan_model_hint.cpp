@@ -235,8 +235,8 @@ bool ScanModel::set_locked(int id, bool locked) {
   }
   if (locked) {
     found->second.locked_as.insert(id);
-  } else {
-    found->second.locked_as.erase(id);
+  } else if (found->second.locked_as.erase(id) > 0 && !found->second.is_locked()) {
+    is_unsettled_ = true;  // nobody has asked yet what but the lock holds it there
   }
   return true;
 }

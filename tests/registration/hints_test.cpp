@@ -394,5 +394,25 @@ TEST(Locks, HoldThroughEverythingThatComesAfter) {
   EXPECT_FALSE(registrar.set_locked(77, true));
 }
 
+TEST(Locks, ThatAreTakenAwayLeaveAScanAsSureAsItsSurfaceMakesIt) {
+  const auto surface = bumpy(25);
+  const RigidTransform truth = pose_of(9, -5, 100, {2, -1, 0});
+  Registrar registrar;
+  JobContext job;
+  registrar.add(0, scanned(surface, {}, 1), nullptr, job);
+  registrar.add_at(1, scanned(surface, truth, 2), nullptr, truth, true, job);
+  registrar.add_at(2, scanned(bumpy(99), {}, 3), nullptr, pose_of(0, 0, 0, {200, 0, 0}), true, job);
+  ASSERT_TRUE(registrar.finalize(job));
+  ASSERT_EQ(pose_in(registrar, 1).sigma_mm, 0.0);
+  ASSERT_EQ(pose_in(registrar, 2).status, PoseStatus::kRegistered);
+  ASSERT_TRUE(registrar.set_locked(1, false));
+  ASSERT_TRUE(registrar.set_locked(2, false));
+  ASSERT_TRUE(registrar.finalize(job));
+  const ScanPose held = pose_in(registrar, 1);
+  EXPECT_EQ(held.status, PoseStatus::kRegistered) << held.reason;
+  EXPECT_GT(held.sigma_mm, 0.0);
+  EXPECT_NE(pose_in(registrar, 2).status, PoseStatus::kRegistered) << "nothing holds it";
+}
+
 }  // namespace
 }  // namespace dubsar
