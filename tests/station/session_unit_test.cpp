@@ -154,7 +154,7 @@ TEST_F(SessionUnit, AConfIsInTheUnitThatAScanStatesBehindAByteOrderMark) {
                              << "ply\nformat ascii 1.0\nobj_info unit m\nelement vertex 1\nproperty float x\n"
                                 "property float y\nproperty float z\nend_header\n0 0 0.1\n";
   ScanPose pose;
-  pose.file = "a.ply";
+  pose.file = fs::path(at("a.ply")).filename().string();
   EXPECT_EQ(mm_per_unit_of_scans(at("a.ply"), {pose}).value(), 1000.0);
 }
 
