@@ -194,20 +194,20 @@ TEST(Hints, AWrongWordKeepsNothingOutWhenTheScanThatItIsGivenOnIsTakenOut) {
   Registrar registrar;
   JobContext job;
   ASSERT_TRUE(registrar.set_hint(
-      1,
-      clicked(0, surface, pose_of(0, 0, 95, {3, 0, 0}) * truth[1], truth[0], {{-15, -12}, {16, -8}, {2, 17}}),
+      2,
+      clicked(0, surface, pose_of(0, 0, 95, {3, 0, 0}) * truth[2], truth[0], {{-15, -12}, {16, -8}, {2, 17}}),
       job));
-  for (const int id : {0, 2, 1}) {
+  for (const int id : {0, 1, 2}) {
     registrar.add(id, grid(id), nullptr, job);
   }
-  ASSERT_NE(pose_in(registrar, 1).status, PoseStatus::kRegistered);
+  ASSERT_NE(pose_in(registrar, 2).status, PoseStatus::kRegistered);
   ASSERT_TRUE(registrar.remove(0, job));
-  const RigidTransform model_from_truth = pose_in(registrar, 2).model_from_scanner * truth[2].inverse();
-  const ScanPose without = pose_in(registrar, 1);
+  const RigidTransform model_from_truth = pose_in(registrar, 1).model_from_scanner * truth[1].inverse();
+  const ScanPose without = pose_in(registrar, 2);
   EXPECT_EQ(without.status, PoseStatus::kRegistered) << without.reason;
-  EXPECT_LT(error_mm(without, model_from_truth * truth[1]), 0.02);
+  EXPECT_LT(error_mm(without, model_from_truth * truth[2]), 0.02);
   EXPECT_EQ(registrar.add(0, grid(0), nullptr, job).status, PoseStatus::kRegistered);
-  EXPECT_THAT(pose_in(registrar, 1).reason, HasSubstr("the hint leads to no certain pose"));
+  EXPECT_THAT(pose_in(registrar, 2).reason, HasSubstr("the hint leads to no certain pose"));
 }
 
 TEST(Hints, AWrongWordKeepsNothingOutWhenItIsGivenOnAnotherScan) {
