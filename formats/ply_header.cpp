@@ -168,8 +168,8 @@ Result<PlyHeader> parse_ply_header(std::string_view bytes, const std::string& wh
   const std::string_view head = bytes.substr(0, kMaxPlyHeaderBytes);
   TextScanner scanner(head);
   // Lines of an old Macintosh end with a carriage return alone.
-  const std::string_view first = without_byte_order_mark(head);
-  const char line_end = first.starts_with("ply\r") && !first.starts_with("ply\r\n") ? '\r' : '\n';
+  const std::string_view unmarked = without_byte_order_mark(head);
+  const char line_end = unmarked.starts_with("ply\r") && !unmarked.starts_with("ply\r\n") ? '\r' : '\n';
   (void)scanner.line(line_end);
   PlyHeader header;
   bool has_format = false;
