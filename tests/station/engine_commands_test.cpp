@@ -6,10 +6,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <Eigen/Geometry>
+#include <Eigen/Core>
 #include <algorithm>
 #include <atomic>
-#include <condition_variable>
 #include <future>
 #include <mutex>
 #include <thread>
@@ -20,130 +19,17 @@
 #include "station/session_pins.h"
 #include "station/tablet_record.h"
 #include "tests/station/support/bumpy_scans.h"
-#include "tests/station/support/endless_scanner.h"
+#include "tests/station/support/running_engine.h"
 #include "tests/station/support/two_fold_scans.h"
 #include "tests/support/temporary_folder.h"
 
 namespace dubsar {
 namespace {
 
+using test::driven;
+using test::RunningEngine;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
-
-/// Runs an engine on scans that come slowly, and lets the test wait for what it says.
-class RunningEngine {
- public:
-  RunningEngine(const std::filesystem::path& scans, const std::filesystem::path& session, double rate)
-      : RunningEngine({"replay:" + scans.string() + "?rate=" + std::to_string(rate), session, false, 0,
-                       std::nullopt}) {}
-  explicit RunningEngine(EngineOptions options)
-      : engine_(std::move(options), [this](const Event& event) { hear(event); }),
-        thread_([this] { result_.emplace(engine_.run(job_)); }) {}
-  ~RunningEngine() {
-    job_.cancel();  // where a test has failed in its middle it may wait for somebody
-    join();
-  }
-  RunningEngine(const RunningEngine&) = delete;
-  RunningEngine& operator=(const RunningEngine&) = delete;
-
-  bool post(OperatorCommand command) { return engine_.post(std::move(command)); }
-  /// Waits until something said holds the text.
-  [[nodiscard]] bool says(const std::string& text) {
-    std::unique_lock lock(mutex_);
-    return heard_.wait_for(lock, std::chrono::seconds(30),
-                           [&] { return said_.find(text) != std::string::npos; });
-  }
-  const Result<EngineResult>& join() {
-    if (thread_.joinable()) {
-      thread_.join();
-    }
-    return *result_;
-  }
-  [[nodiscard]] std::string said() {
-    const std::scoped_lock lock(mutex_);
-    return said_;
-  }
-  [[nodiscard]] int times_waited() {
-    const std::scoped_lock lock(mutex_);
-    return waits_;
-  }
-  /// What it said then that it waits for.
-  [[nodiscard]] std::optional<NextView> next() {
-    const std::scoped_lock lock(mutex_);
-    return next_;
-  }
-  /// Waits until it has waited for the operator that often.
-  [[nodiscard]] bool waits(int times) {
-    std::unique_lock lock(mutex_);
-    return heard_.wait_for(lock, std::chrono::seconds(30), [&] { return waits_ >= times; });
-  }
-  /// Waits until it has worked out what is red that often.
-  [[nodiscard]] bool plans(int times) {
-    std::unique_lock lock(mutex_);
-    return heard_.wait_for(lock, std::chrono::seconds(30), [&] { return red_maps_ >= times; });
-  }
-  [[nodiscard]] std::vector<ScanPose> poses() {
-    const std::scoped_lock lock(mutex_);
-    return poses_;
-  }
-  /// In its middle, until let_go(). Once.
-  void hold_next_scan() { holds_next_ = true; }
-  [[nodiscard]] bool holds() {
-    return held_.get_future().wait_for(std::chrono::seconds(30)) == std::future_status::ready;
-  }
-  void let_go() { let_go_.set_value(); }
-
- private:
-  void hear(const Event& event) {
-    if (std::holds_alternative<ProfileArrived>(event) && holds_next_.exchange(false)) {
-      held_.set_value();
-      let_go_.get_future().wait();
-    }
-    const std::scoped_lock lock(mutex_);
-    if (const auto* placed = std::get_if<ScanPlaced>(&event)) {
-      said_ += "placed " + std::to_string(placed->pose.id) + " " + to_string(placed->pose.status) + "\n";
-      poses_ = placed->all;
-    } else if (const auto* stored = std::get_if<ScanStored>(&event)) {
-      said_ += "stored " + std::to_string(stored->id) + "\n";
-    } else if (const auto* obeyed = std::get_if<OperatorObeyed>(&event)) {
-      said_ += obeyed->what + "\n";
-      poses_ = obeyed->all;
-    } else if (const auto* notice = std::get_if<Notice>(&event)) {
-      said_ += notice->text + "\n";
-    } else if (const auto* pins = std::get_if<PinsKnown>(&event)) {
-      said_ += pins->pins ? "pins of " + std::to_string(pins->pins->tip_diameter_mm) + " mm\n" : "no pins\n";
-    } else if (std::holds_alternative<RedMapChanged>(event)) {
-      ++red_maps_;
-    } else if (const auto* waits = std::get_if<WaitsForOperator>(&event)) {
-      ++waits_;
-      next_ = waits->next;
-    }
-    heard_.notify_all();
-  }
-
-  std::mutex mutex_;
-  std::condition_variable heard_;
-  std::string said_;
-  int red_maps_ = 0;
-  int waits_ = 0;
-  std::optional<NextView> next_;
-  std::vector<ScanPose> poses_;
-  std::atomic<bool> holds_next_ = false;
-  std::promise<void> held_, let_go_;
-  JobContext job_;
-  Engine engine_;
-  std::optional<Result<EngineResult>> result_;
-  std::thread thread_;
-};
-
-/// A rig with motors that waits for the key before each scan.
-EngineOptions driven(const test::TemporaryFolder& folder) {
-  EngineOptions options;
-  options.device = "sim:?seed=1&size=20x16x8&spacing=0.25&noise=0.02";
-  options.session = folder.path() / "session";
-  options.automatic = options.paced = true;
-  return options;
-}
 
 // Of several commands in a row the first's next step is not told as the one to press the key for.
 TEST(EngineCommands, ThinksAllOfThemOverBeforeItWaitsAgain) {
@@ -167,123 +53,6 @@ TEST(EngineCommands, ThinksAllOfThemOverBeforeItWaitsAgain) {
   const Result<EngineResult>& result = engine.join();
   ASSERT_TRUE(result.has_value()) << result.error().line();
   EXPECT_EQ(engine.times_waited(), 3);
-}
-
-// Whatever is said of a scan, it was driven to: planner and motors go on by that.
-TEST(EngineCommands, AScanThatIsPutBackIsTakenAgainFromWhereItWasDrivenTo) {
-  const test::TemporaryFolder folder;
-  RunningEngine engine(driven(folder));
-  ASSERT_TRUE(engine.waits(1));
-  ASSERT_TRUE(engine.post(DropScan{0, "by mistake"}));
-  ASSERT_TRUE(engine.post(RestoreScan{0}));
-  ASSERT_TRUE(engine.post(ScanAgain{0}));
-  ASSERT_TRUE(engine.says("scan 0 is put back"));
-  ASSERT_TRUE(engine.waits(2)) << "it knows of no view to take again";
-  const std::optional<NextView> next = engine.next();
-  ASSERT_TRUE(next && next->placement);
-  EXPECT_EQ(next->placement->turntable_rad, 0);
-  EXPECT_EQ(next->placement->tilt_rad, 0);
-  ASSERT_TRUE(engine.post(ScanNow{}));
-  ASSERT_TRUE(engine.waits(3));
-  ASSERT_TRUE(engine.post(Finish{}));
-  const Result<EngineResult>& result = engine.join();
-  ASSERT_TRUE(result.has_value()) << result.error().line();
-}
-
-double apart_rad(const RigidTransform& a, const RigidTransform& b) {
-  return Eigen::AngleAxisd(a.rotation.transpose() * b.rotation).angle();
-}
-
-/// A session that is conclusive, and stays so without its first scan: there is a copy of that.
-void make_conclusive(const std::filesystem::path& session) {
-  ASSERT_TRUE(test::scan_all_round(session));
-  SessionStore store = SessionStore::open(session).value();
-  const Result<RangeGrid> first = store.load_grid(0);
-  ASSERT_TRUE(first && store.add_grid(*first));
-}
-
-/// The first scan of such a session: nothing but that word asks for one.
-EngineOptions taking_again(const std::filesystem::path& session) {
-  EngineOptions options;
-  options.device = "sim:?seed=1&size=12x10x8&spacing=0.4&noise=0.02";
-  options.session = session;
-  options.automatic = options.paced = options.first_scan_waits = true;
-  options.first_commands = {ScanAgain{0}};
-  return options;
-}
-
-TEST(EngineCommands, AScanThatIsToBeTakenAgainIsLostNeitherBehindAnotherWordNorWhileAnotherIsUnderWay) {
-  const test::TemporaryFolder folder;
-  ASSERT_NO_FATAL_FAILURE(make_conclusive(folder.path() / "s"));
-  RunningEngine engine(taking_again(folder.path() / "s"));
-  ASSERT_TRUE(engine.waits(1));
-  const std::optional<NextView> first = engine.next();
-  ASSERT_TRUE(first && first->placement);
-  ASSERT_TRUE(engine.post(LockScan{1}));
-  ASSERT_TRUE(engine.waits(2)) << "the run has ended, and nothing was taken again";
-  const std::optional<NextView> still = engine.next();
-  ASSERT_TRUE(still && still->placement);
-  EXPECT_LT(apart_rad(still->model_from_scanner, first->model_from_scanner), 1e-6);
-  const std::vector<ScanPose> poses = engine.poses();
-  const auto other = std::ranges::find(poses, 2, &ScanPose::id);
-  ASSERT_TRUE(other != poses.end() && other->status == PoseStatus::kRegistered);
-  // That scan is under way, and another is to be taken again.
-  engine.hold_next_scan();
-  ASSERT_TRUE(engine.post(ScanNow{}));
-  ASSERT_TRUE(engine.holds());
-  EXPECT_TRUE(engine.post(ScanAgain{2}));
-  EXPECT_TRUE(engine.says("scan 2 is taken out"));
-  EXPECT_TRUE(engine.plans(4)) << "of the session, of two words and of this one";
-  engine.let_go();
-  ASSERT_TRUE(engine.waits(3)) << "the run has ended, or goes elsewhere, and scan 2 was not taken again";
-  const std::optional<NextView> next = engine.next();
-  ASSERT_TRUE(next && next->placement);
-  EXPECT_LT(apart_rad(next->model_from_scanner, other->model_from_scanner), 0.4);
-  ASSERT_TRUE(engine.post(Finish{}));
-  const Result<EngineResult>& result = engine.join();
-  EXPECT_TRUE(result.has_value()) << result.error().line();
-}
-
-TEST(EngineCommands, AScannerThatNothingDrivesIsWaitedForWhereAScanIsToBeTakenAgain) {
-  const test::TemporaryFolder folder;
-  const auto session = folder.path() / "s";
-  ASSERT_NO_FATAL_FAILURE(make_conclusive(session));
-  std::filesystem::copy(session / "grids", folder.path() / "scans");
-  EngineOptions options = taking_again(session);
-  options.device = test::endless_scanner(folder.path() / "scans");
-  RunningEngine engine(options);
-  ASSERT_TRUE(engine.waits(1));
-  ASSERT_TRUE(engine.post(LockScan{1}));
-  ASSERT_TRUE(engine.plans(3)) << "of the session, and of two words";
-  ASSERT_TRUE(engine.post(ScanNow{}));
-  EXPECT_TRUE(engine.says("stored ")) << "the run has ended, and nothing was taken again";
-  engine.post(Finish{});
-  const Result<EngineResult>& result = engine.join();
-  EXPECT_TRUE(result.has_value()) << result.error().line();
-}
-
-/// A window starts the next run for it.
-TEST(EngineCommands, AScanIsNotTakenOutToBeTakenAgainWhereNoMoreAreTaken) {
-  const test::TemporaryFolder folder;
-  const auto scans = test::write_bumpy_scans(folder.path() / "scans", 2);
-  std::promise<void> rests, said;
-  Engine engine({"replay:" + scans.string(), folder.path() / "s", false, 0, std::nullopt},
-                [&](const Event& event) {
-                  if (std::holds_alternative<DeviceRests>(event)) {
-                    rests.set_value();
-                    said.get_future().wait();
-                  }
-                });
-  JobContext job;
-  std::optional<Result<EngineResult>> result;
-  std::jthread runs([&] { result.emplace(engine.run(job)); });
-  EXPECT_EQ(rests.get_future().wait_for(std::chrono::seconds(30)), std::future_status::ready);
-  EXPECT_FALSE(engine.post(ScanAgain{0}));
-  EXPECT_TRUE(engine.post(LockScan{0})) << "other words are heeded still";
-  said.set_value();
-  runs.join();
-  ASSERT_TRUE(*result) << result->error().line();
-  EXPECT_EQ((*result)->poses.size(), 2U);
 }
 
 std::vector<int> ids_of(const std::vector<ScanPose>& poses) {
