@@ -10,21 +10,20 @@
 
 #include "registration/registrar.h"
 #include "tests/registration/support/height_field.h"
+#include "tests/registration/support/pose_error.h"
 
 namespace dubsar {
 namespace {
 
 using testing::bumpy;
 using ::testing::ElementsAre;
+using testing::error_mm;
 using testing::FieldScan;
 using ::testing::HasSubstr;
 using ::testing::Not;
 using testing::pose_of;
 using testing::scan_field;
-
-std::shared_ptr<const RangeGrid> share(RangeGrid grid) {
-  return std::make_shared<const RangeGrid>(std::move(grid));
-}
+using testing::share;
 
 /// Two scans of the left and of the right, 0 and 1, and a third of both, 2.
 struct Bridged {
@@ -193,6 +192,17 @@ TEST(Registrar, AScanThatIsLeftAloneIsMeasuredAgainstNothing) {
   EXPECT_EQ(alone.sigma_mm, 0.0);
   EXPECT_EQ(alone.overlap, 0.0);
   EXPECT_EQ(alone.rms_mm, 0.0);
+}
+
+TEST(Registrar, APoseThatLeadsNowhereIsToldAndABetterOneBringsAllBack) {
+  Bridged scans(0.5);
+  const RigidTransform before = scans.registrar.poses()[2].model_from_scanner;
+  EXPECT_FALSE(scans.registrar.set_pose(2, pose_of(0, 90, 0, {40, 40, 0}), false, scans.job));
+  EXPECT_THAT(scans.registered(), ElementsAre(0));
+  EXPECT_FALSE(scans.registrar.poses()[1].reason.empty());
+  EXPECT_FALSE(scans.registrar.poses()[2].reason.empty());
+  EXPECT_TRUE(scans.registrar.set_pose(2, before, false, scans.job));
+  EXPECT_THAT(scans.registered(), ElementsAre(0, 1, 2));
 }
 
 }  // namespace
