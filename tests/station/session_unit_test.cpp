@@ -12,7 +12,6 @@
 
 #include "formats/pins_json.h"
 #include "formats/poses_json.h"
-#include "station/conf_unit.h"
 #include "tests/station/support/bumpy_scans.h"
 #include "tests/station/support/command.h"
 #include "tests/support/temporary_folder.h"
@@ -147,15 +146,6 @@ TEST_F(SessionUnit, AConfIsInTheUnitThatItsScansState) {
   const Outcome mixed = stitched("metres.conf");
   EXPECT_EQ(mixed.status, 2);
   EXPECT_THAT(mixed.complaints(), ElementsAre(HasSubstr("in another unit than those of")));
-}
-
-TEST_F(SessionUnit, AConfIsInTheUnitThatAScanStatesBehindAByteOrderMark) {
-  std::ofstream(at("a.ply")) << "\xEF\xBB\xBF"
-                             << "ply\nformat ascii 1.0\nobj_info unit m\nelement vertex 1\nproperty float x\n"
-                                "property float y\nproperty float z\nend_header\n0 0 0.1\n";
-  ScanPose pose;
-  pose.file = fs::path(at("a.ply")).filename().string();
-  EXPECT_EQ(mm_per_unit_of_scans(at("a.ply"), {pose}).value(), 1000.0);
 }
 
 TEST_F(SessionUnit, PosesInAnotherUnitThanTheirScansAreTold) {
