@@ -13,6 +13,7 @@
 #include "core/order_statistics.h"
 #include "core/parallel.h"
 #include "core/wide_clones.h"
+#include "core/wide_vec.h"
 
 namespace dubsar {
 
@@ -71,22 +72,8 @@ double spacing_of(const RangeGrid& grid) {
              : static_cast<double>(std::max(median_of(std::move(along)), median_of(std::move(across))));
 }
 
-struct Vec {
-  float x, y, z;
-};
-
-[[gnu::always_inline]] inline Vec step(const Vec& from, const Vec& to) {
-  return {to.x - from.x, to.y - from.y, to.z - from.z};
-}
-[[gnu::always_inline]] inline float dot(const Vec& a, const Vec& b) {
-  return a.x * b.x + (a.y * b.y + a.z * b.z);
-}
-[[gnu::always_inline]] inline Vec cross(const Vec& a, const Vec& b) {
-  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
-}
-[[gnu::always_inline]] inline float larger(float a, float b) {
-  return a < b ? b : a;
-}
+using wide::larger;
+using wide::Vec;
 
 /// How far a sample stands out of the four beside it, mm; kMissing where one of the five is not there or far
 /// off, or is no number. Without a branch, so that the compiler can work on several samples at once.

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "core/wide_clones.h"
+#include "core/wide_vec.h"
 
 namespace dubsar {
 
@@ -55,21 +56,11 @@ struct SampleRow {
   }
 };
 
-struct Vec {
-  float x, y, z;
-};
+using wide::larger;
+using wide::Vec;
 
 [[gnu::always_inline]] inline Vec step(const SampleRow& from, int a, const SampleRow& to, int b) {
   return {to.x[b] - from.x[a], to.y[b] - from.y[a], to.z[b] - from.z[a]};
-}
-[[gnu::always_inline]] inline float dot(const Vec& a, const Vec& b) {
-  return a.x * b.x + (a.y * b.y + a.z * b.z);
-}
-[[gnu::always_inline]] inline Vec cross(const Vec& a, const Vec& b) {
-  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
-}
-[[gnu::always_inline]] inline float larger(float a, float b) {
-  return a < b ? b : a;
 }
 
 /// The triangle with edges ab and ac, squared lengths given; 1 where it passes.
