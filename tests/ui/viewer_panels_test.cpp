@@ -110,6 +110,9 @@ TEST_F(ViewerPanels, AFieldThatIsNotKnownHasNotTheColoursOfTheOneBefore) {
   const auto outcome = play(R"(wait wedges 60
 wait whole
 wait idle
+click overlay
+click overlay.Clay
+wait whole
 screenshot clay.png
 click overlay
 click overlay.Mean curvature, 1/mm
