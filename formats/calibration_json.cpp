@@ -20,6 +20,9 @@ OrderedJson quality_json(const CalibrationQuality& q) {
 
 CalibrationQuality read_quality(const JsonNode& node) {
   constexpr int kMost = 1'000'000;
+  node.only({"board_views", "stripe_views", "stage_positions", "corner_rms_px", "corner_rms_um",
+             "stripe_rms_px", "stripe_rms_um", "stage_rms_um", "focal_sigma_px", "volume_sigma_um",
+             "axis_sigma_rad", "left_out"});
   const auto count = [&](const char* key) { return static_cast<int>(node.at(key).integer(0, kMost)); };
   const auto number = [&](const char* key) { return node.at(key).number(0, 1e9); };
   CalibrationQuality q;
@@ -42,6 +45,7 @@ CalibrationQuality read_quality(const JsonNode& node) {
 
 CameraModel read_camera(const JsonNode& node) {
   constexpr int kMostPixels = 1 << 16;
+  node.only({"serial", "width", "height", "focal_px", "center_px", "distortion"});
   CameraModel camera;
   camera.width = static_cast<int>(node.at("width").integer(2, kMostPixels));
   camera.height = static_cast<int>(node.at("height").integer(2, kMostPixels));
@@ -123,6 +127,7 @@ Result<RigCalibration> parse_calibration(std::string_view text, const std::strin
   const auto laser = root.find("laser");
   c.has_laser = laser.has_value();
   if (laser) {
+    laser->only({"normal", "distance", "source"});
     c.laser.normal = laser->at("normal").vector3();
     c.laser.distance_mm = laser->at("distance").number(-1e6, 1e6);
     if (const auto source = laser->find("source")) {
@@ -132,6 +137,7 @@ Result<RigCalibration> parse_calibration(std::string_view text, const std::strin
   const auto stage = root.find("stage");
   c.has_motion = stage.has_value();
   if (stage) {
+    stage->only({"motion", "direction", "axis_point"});
     c.motion.kind = static_cast<MotionKind>(stage->at("motion").one_of(motion_words()));
     c.motion.direction = stage->at("direction").vector3();
     if (c.motion.kind != MotionKind::kLinear) {

@@ -81,6 +81,21 @@ TEST(CalibrationJson, RefusesWhatCannotBe) {
   EXPECT_FALSE(parse_calibration("", "calibration.json").has_value());
 }
 
+/// "source" may be missing: under a misspelt name it would be, and nobody would know.
+TEST(CalibrationJson, RefusesAWordThatItDoesNotKnowWhereverItStands) {
+  const std::string text = calibration_to_json(some_rig());
+  for (const std::string place : {"camera", "laser", "stage", "quality"}) {
+    std::string misspelt = text;
+    const std::size_t at = misspelt.find('{', misspelt.find('"' + place + '"'));
+    ASSERT_NE(at, std::string::npos) << place;
+    misspelt.insert(at + 1, "\"sourse\": 1, ");
+    const Result<RigCalibration> refused = parse_calibration(misspelt, "calibration.json");
+    ASSERT_FALSE(refused.has_value()) << place;
+    EXPECT_NE(refused.error().line().find(place + " has"), std::string::npos) << refused.error().line();
+    EXPECT_NE(refused.error().line().find("sourse"), std::string::npos) << refused.error().line();
+  }
+}
+
 TEST(CalibrationSet, RoundTrip) {
   CalibrationSet set;
   set.board = "charuco:9x7:5:3.7";
