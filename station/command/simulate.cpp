@@ -92,6 +92,8 @@ Result<int> simulate_tablet(const SimulateOptions& options, CommandContext& cont
   return 0;
 }
 
+constexpr std::size_t kMostViews = 1000;
+
 /// Above this a scan takes gigabytes.
 constexpr double kMostSamples = 5e7;
 
@@ -110,7 +112,29 @@ Status check_scan_size(const SimulateOptions& options, const sim::SimTablet& tab
                   1.05 * across_mm / std::sqrt(kMostSamples)));
 }
 
+fs::path scan_name(std::size_t k) {
+  return fmt::format("scan_{:03}.ply", k);
+}
+
+/// What an earlier run with more views left would be taken for scans of this tablet.
+Status check_no_scan_stays(const SimulateOptions& options) {
+  for (auto k = static_cast<std::size_t>(options.views); k < kMostViews; ++k) {
+    const fs::path scan = fs::path(options.out) / scan_name(k);
+    std::error_code ignored;
+    if (fs::exists(scan, ignored)) {
+      return fail(ErrorKind::kUsage,
+                  fmt::format("a scan of an earlier run lies there, and would be taken for one of these {}",
+                              options.views),
+                  scan.string(), "choose another folder, or take the earlier scans away");
+    }
+  }
+  return {};
+}
+
 Result<int> simulate_scans(const SimulateOptions& options, CommandContext& context) {
+  if (const Status alone = check_no_scan_stays(options); !alone) {
+    return std::unexpected(alone.error());
+  }
   const Result<sim::SimTablet> tablet = read_tablet_file(
       options.tablet, {.mm_per_unit = options.unit.empty() ? std::nullopt : mm_per_unit(options.unit)});
   if (!tablet) {
@@ -122,6 +146,9 @@ Result<int> simulate_scans(const SimulateOptions& options, CommandContext& conte
   if (const Status made = make_folder(options.out); !made) {
     return std::unexpected(made.error());
   }
+  const fs::path truth_file = fs::path(options.out) / "truth_poses.json";
+  std::error_code ignored;
+  fs::remove(truth_file, ignored);  // of an earlier run: it is no truth about the first new scan
   const MeshQuery query(tablet->mesh);
   sim::ScannerOptions scanner_options;
   scanner_options.spacing_mm = options.spacing_mm;
@@ -157,8 +184,7 @@ Result<int> simulate_scans(const SimulateOptions& options, CommandContext& conte
       return std::unexpected(grid.error());
     }
     grid->pin_tip_diameter_mm = stand ? pin_options.tip_diameter_mm : 0;
-    char name[32];
-    std::snprintf(name, sizeof name, "scan_%03zu.ply", k);
+    const fs::path name = scan_name(k);
     if (const Status written =
             write_grid_ply(fs::path(options.out) / name, *grid, {.label = made_up_label()});
         !written) {
@@ -166,14 +192,13 @@ Result<int> simulate_scans(const SimulateOptions& options, CommandContext& conte
     }
     ScanPose pose;
     pose.id = id;
-    pose.file = name;
+    pose.file = name.string();
     pose.model_from_scanner = views[k].tablet_from_scanner;
     pose.status = PoseStatus::kRegistered;
     pose.overlap = 1;
     truth.push_back(pose);
   }
   context.job.progress("scanning", 1.0);
-  const fs::path truth_file = fs::path(options.out) / "truth_poses.json";
   if (const Status written = write_poses(truth_file, truth); !written) {
     return std::unexpected(written.error());
   }
@@ -230,7 +255,7 @@ void add_simulate(CLI::App& app, Action& chosen) {
                    "what the mesh's numbers are; default: the file's own word, else mm")
       ->check(CLI::IsMember(std::vector<std::string>(kLengthUnits.begin(), kLengthUnits.end())));
   scans->add_option("--views", options->views, "how many, turned by hand")
-      ->check(in_range(1, 1000))
+      ->check(in_range(1, static_cast<int>(kMostViews)))
       ->capture_default_str();
   scans->add_option("--noise", options->noise_mm, "mm, at normal incidence")
       ->check(in_range(0.0, 1.0))

@@ -336,5 +336,27 @@ TEST(CommandSimulate, TheSameSeedGivesTheSameBytes) {
   EXPECT_TRUE(read_pins(one / "pins.json").has_value());
 }
 
+/// They would be registered, stitched and judged with the others as scans of one tablet.
+TEST(CommandUsage, ScansOfAnEarlierRunAreNotLeftAmongThoseOfAnother) {
+  const test::TemporaryFolder folder;
+  const std::string made = (folder.path() / "made").string();
+  ASSERT_EQ(run_command({"simulate", "tablet", "--size", "24x20x10", "--spacing", "1", "-o", made}).status,
+            0);
+  const auto scans = [&](const char* views) {
+    return run_command({"simulate", "scans", "--tablet", made + "/tablet.ply", "--views", views, "--spacing",
+                        "1", "-o", made});
+  };
+  ASSERT_EQ(scans("3").status, 0);
+  const std::string before = test::bytes_of(folder.path() / "made/scan_000.ply");
+  const Outcome fewer = scans("2");
+  EXPECT_EQ(fewer.status, 2);
+  EXPECT_THAT(fewer.complaints(), SizeIs(1)) << fewer.err;
+  EXPECT_THAT(fewer.err, HasSubstr("scan_002.ply"));
+  EXPECT_TRUE(test::bytes_of(folder.path() / "made/scan_000.ply") == before);
+  EXPECT_EQ(scans("3").status, 0) << "the same again";
+  fs::remove(folder.path() / "made/scan_002.ply");
+  EXPECT_EQ(scans("2").status, 0);
+}
+
 }  // namespace
 }  // namespace dubsar
