@@ -27,19 +27,22 @@ std::vector<std::pair<std::string, std::string>> words_of_scans(const std::strin
   return words;
 }
 
+bool is_simulator(const std::string& device) {
+  return device == "sim" || device.starts_with("sim-");
+}
+
 }  // namespace
+
+bool is_made_up(const RangeGrid& grid) {
+  return is_simulator(grid.device);
+}
 
 Result<std::string> simulated_words(const SessionStore& store) {
   const Result<std::vector<StoredScan>> scans = store.scans();
   if (!scans) {
     return std::unexpected(scans.error());
   }
-  const auto is_simulator = [](const std::string& device) {
-    return device == "sim" || device.starts_with("sim-");
-  };
-  const auto by_simulator = [&](const LeftScan& left) {
-    return std::ranges::any_of(left.parts, is_simulator, &RangeGrid::device);
-  };
+  const auto by_simulator = [&](const LeftScan& left) { return std::ranges::any_of(left.parts, is_made_up); };
   const bool simulated = std::ranges::any_of(*scans, is_simulator, &StoredScan::device) ||
                          std::ranges::any_of(left_scans(store.folder()), by_simulator);
   return simulated ? kMadeUp : "";
@@ -49,14 +52,15 @@ FileLabel made_up_label() {
   return label_of_words(words_of_scans(kMadeUp));
 }
 
-FileLabel label_of_files(const std::vector<std::filesystem::path>& grids) {
+FileLabel label_of_files(const std::vector<std::filesystem::path>& grids, bool made_up) {
   std::vector<FileLabel> labels;
   std::ranges::transform(grids, std::back_inserter(labels), read_file_label);
   const auto others = std::ranges::adjacent_find(labels, std::ranges::not_equal_to(), &FileLabel::words);
-  if (!labels.empty() && others == labels.end()) {
+  const bool simulated = made_up || std::ranges::any_of(labels, &FileLabel::simulated);
+  if (!labels.empty() && others == labels.end() && labels.front().simulated == simulated) {
     return labels.front();
   }
-  return std::ranges::any_of(labels, &FileLabel::simulated) ? made_up_label() : FileLabel{};
+  return simulated ? made_up_label() : FileLabel{};
 }
 
 Result<FileLabel> tablet_label(const SessionStore& store) {

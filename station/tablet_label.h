@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "acquisition/session_store.h"
+#include "core/range_grid.h"
 #include "core/result.h"
 #include "formats/file_label.h"
 
@@ -17,12 +18,16 @@ namespace dubsar {
 /// Empty of clay.
 [[nodiscard]] Result<std::string> simulated_words(const SessionStore& store);
 
+/// Whether the grid names the simulator as its device. A grid file (.grid) tells it so alone.
+[[nodiscard]] bool is_made_up(const RangeGrid& grid);
+
 /// Of files that the simulator makes.
 [[nodiscard]] FileLabel made_up_label();
 
 /// What a mesh of range grids that belong to no session says: what their own files say, where all say the
-/// same; else no more than that some of them were made up. Files that say nothing count, too.
-[[nodiscard]] FileLabel label_of_files(const std::vector<std::filesystem::path>& grids);
+/// same; else no more than that some of them were made up. Files that say nothing count, too. `made_up`:
+/// is_made_up() of any of them.
+[[nodiscard]] FileLabel label_of_files(const std::vector<std::filesystem::path>& grids, bool made_up);
 
 /// What the files of a session's tablet say of themselves: its numbers (without any the session's name),
 /// collection, who scanned it, rights, and whether a program made it up. Notes stay with the session.

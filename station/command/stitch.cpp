@@ -115,7 +115,7 @@ Result<Taken> take_scan_by_scan(const ScanSetArguments& arguments, Stitcher& sti
     }
     ++taken.scans;
     taken.names[scan.id] = scan.file;
-    taken.files[scan.id] = scan.read_from;
+    taken.note_file(scan);
     if (file) {
       scale.add(*scan.grid, pose->model_from_scanner);
     }
@@ -170,7 +170,7 @@ Result<Taken> take_registered(const ScanSetArguments& arguments, Stitcher& stitc
   }
   Taken taken;
   for (const StationScan& scan : set->scans) {
-    taken.files[scan.id] = scan.read_from;
+    taken.note_file(scan);
   }
   for (const ScanPose& pose : *poses) {
     if (pose.status == PoseStatus::kRegistered) {
@@ -213,10 +213,12 @@ int tell_done(const StitchArguments& arguments, const std::vector<LeftOutScan>& 
 Result<FileLabel> label_of(const std::string& path, const Taken& taken) {
   if (!SessionStore::is_session(path)) {
     std::vector<std::filesystem::path> grids;
+    bool made_up = false;
     for (const auto& [id, name] : taken.names) {
       grids.push_back(taken.files.at(id));
+      made_up = made_up || taken.made_up.contains(id);
     }
-    return label_of_files(grids);
+    return label_of_files(grids, made_up);
   }
   const Result<SessionStore> store = SessionStore::open(path, SessionStore::Access::kReadOnly);
   return store ? tablet_label(*store) : std::unexpected(store.error());

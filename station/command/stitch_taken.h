@@ -14,6 +14,8 @@
 #include "registration/foreign_matter.h"
 #include "station/command/left_out_scans.h"
 #include "station/scan_set.h"
+#include "station/station_scan.h"
+#include "station/tablet_label.h"
 #include "triangulation/stitcher.h"
 
 namespace dubsar {
@@ -24,11 +26,18 @@ struct Taken {
   std::map<int, std::string> names;  ///< of those, by id
   /// That the scans of a folder were read from, by id: a scan may be called otherwise. Of others, too.
   std::map<int, std::filesystem::path> files;
+  std::set<int> made_up;              ///< by the simulator, as their grids say. Of others, too
   bool lacks_poses = false;           ///< of a scan that has not been judged yet: then the rest was not taken
   std::vector<ScanPose> poses;        ///< of those
   std::set<int> without_sigma;        ///< of those whose poses say nothing of how far they may be off
   std::vector<LeftOutScan> left_out;  ///< the others that stand
 
+  void note_file(const StationScan& scan) {
+    files[scan.id] = scan.read_from;
+    if (is_made_up(*scan.grid)) {
+      made_up.insert(scan.id);
+    }
+  }
   void leave_out(LeftOutScan scan) {
     warn_of(scan);
     left_out.push_back(std::move(scan));

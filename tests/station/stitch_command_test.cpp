@@ -14,6 +14,7 @@
 #include "acquisition/session_store.h"
 #include "formats/atomic_file.h"
 #include "formats/file_label_reader.h"
+#include "formats/grid_file.h"
 #include "formats/mesh_io.h"
 #include "formats/poses_json.h"
 #include "tests/station/support/bumpy_scans.h"
@@ -291,6 +292,25 @@ TEST_F(StitchCommand, AMeshOfAFolderSaysWhatAllItsScansSay) {
   EXPECT_THAT(words_of_mesh(), SizeIs(0));
   labelled(2, {{"SIMULATED", "no tablet"}});
   EXPECT_THAT(words_of_mesh(), ElementsAre(Pair("SIMULATED", HasSubstr("there is no such tablet"))));
+}
+
+/// Of a package's `scans/grids`: nothing is said there but the device.
+TEST_F(StitchCommand, AMeshOfGridsOfTheSimulatorSaysThatItWasMadeUp) {
+  const auto words_with_device = [&](const char* device) {
+    for (int k = 0; k < 3; ++k) {
+      RangeGrid grid = test::bumpy_scan(k);
+      grid.source = test::scan_name(k);
+      grid.device = device;
+      EXPECT_TRUE(write_grid_file(
+          fs::path(at("scans")) / fs::path(test::scan_name(k)).replace_extension("grid"), grid));
+      fs::remove(fs::path(at("scans")) / test::scan_name(k));
+    }
+    EXPECT_EQ(stitched().status, 0);
+    return read_file_label(at("mesh.ply")).words;
+  };
+  EXPECT_THAT(words_with_device("sim-3"),
+              ElementsAre(Pair("SIMULATED", HasSubstr("there is no such tablet"))));
+  EXPECT_THAT(words_with_device("simplex 3"), SizeIs(0));
 }
 
 /// Those of a package's `scans/ply` keep the names of the files that they once came from.
