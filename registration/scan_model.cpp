@@ -22,15 +22,6 @@ constexpr const char* kOtherGroup =
     "it fits other scans, but not the largest group; scan what connects them, with at least 30 % overlap, or "
     "take it out where it is of another tablet";
 
-/// A scan that sees so much more than the first one (by its scale) shows what the object's size is: the first
-/// was broken off, or saw a rim.
-constexpr double kMuchLarger = 2.0;
-
-bool size_is_possible(const ScanSize& a, const ScanSize& b, double most_ratio) {
-  return same_spacing(a, b) ||
-         (a.scale_mm <= most_ratio * b.scale_mm && b.scale_mm <= most_ratio * a.scale_mm);
-}
-
 /// Samples farther apart than this part of the scale show neither what is written nor the finer shape: with
 /// 0.020 the bunny and written tablets are registered, with 0.030 hardly any.
 constexpr double kCoarsestSpacing = 0.025;
@@ -95,9 +86,8 @@ void ScanModel::enter(int id, const RangeGrid* grid, const PinSet* pins) {
   }
   const ScanSize before{scale_mm_, first_spacing_mm_};
   if (impossible.empty() && size.scale_mm > kMuchLarger * before.scale_mm &&
-      (same_spacing(size, before) ||
-       (is_all_apart() && size_is_possible(size, before, options_.most_unit_ratio) &&
-        perhaps_other_unit(size, before).empty()))) {
+      (same_spacing(size, before) || (is_all_apart() && sizes_agree(size, before, options_.most_unit_ratio) &&
+                                      perhaps_other_unit(size, before).empty()))) {
     rescale(size.scale_mm);
     first_spacing_mm_ = size.spacing_mm;
   }
@@ -108,63 +98,18 @@ void ScanModel::enter(int id, const RangeGrid* grid, const PinSet* pins) {
   }
   if (!(scan.own_scale_mm > 0)) {
     scan.reason = "the scan has no surface in it; scan it again";
-  } else if (scale_mm_ > 0 && !size_is_possible(size, before, options_.most_unit_ratio)) {
+  } else if (scale_mm_ > 0 && !sizes_agree(size, before, options_.most_unit_ratio)) {
     scan.reason = other_unit(size, before);
+    if (impossible.empty()) {
+      surface.scale_mm = size.scale_mm;
+      scan.waiting = make_scan_surface(g, ignore, surface);
+    }
   } else if (!impossible.empty()) {
     scan.reason = impossible;
   } else {
-    scan.features = make_scan_features(make_scan_surface(g, ignore, surface), options_.search.align);
-    scan.suspicion = perhaps_other_unit(size, before);
-    scan.own_spacing_mm = size.spacing_mm;
-    scan.usable = scan.features.surface->fine->samples.size() >= options_.least_samples;
-    if (!scan.usable) {
-      scan.reason =
-          "too few of its samples can be matched; scan it again, nearer or with more of the surface in view";
-    }
+    give_surface(scan, make_scan_surface(g, ignore, surface), size, before);
   }
   scans_[id] = std::move(scan);
-}
-
-void ScanModel::rescale(double scale_mm) {
-  scale_mm_ = scale_mm;
-  ScanSurfaceOptions surface = options_.surface;
-  surface.scale_mm = scale_mm;
-  for (auto& [id, scan] : scans_) {
-    scan.self_similar.reset();
-    scan.relief_repeats.reset();
-    scan.tried_on.clear();
-    if (scan.features.surface) {
-      scan.features = make_scan_features(rescaled(whole_of(id), surface), options_.search.align);
-      scan.whole.reset();
-      scan.left_out.clear();
-    }
-  }
-}
-
-void ScanModel::settle_scale(JobContext& job) {
-  const Scan* largest = nullptr;
-  bool one_is_as_large = false;
-  for (const auto& [id, scan] : scans_) {
-    if (scan.usable) {
-      largest = largest == nullptr || scan.own_scale_mm > largest->own_scale_mm ? &scan : largest;
-      one_is_as_large = one_is_as_large || (scan.own_scale_mm <= kMuchLarger * scale_mm_ &&
-                                            scale_mm_ <= kMuchLarger * scan.own_scale_mm);
-    }
-  }
-  if (one_is_as_large) {
-    return;
-  }
-  const ScanSize now =
-      largest != nullptr ? ScanSize{largest->own_scale_mm, largest->own_spacing_mm} : ScanSize{0, 0};
-  scale_mm_ = now.scale_mm;
-  first_spacing_mm_ = now.spacing_mm;
-  for (auto& [id, scan] : scans_) {
-    scan.suspicion = perhaps_other_unit({scan.own_scale_mm, scan.own_spacing_mm}, now);
-  }
-  if (largest != nullptr) {
-    rescale(now.scale_mm);
-    retry(job);
-  }
 }
 
 bool ScanModel::is_all_apart() const {

@@ -18,6 +18,7 @@
 #include "registration/scan_stretch.h"
 #include "registration/seen_pin.h"
 #include "registration/self_similarity.h"
+#include "registration/unit_check.h"
 
 namespace dubsar {
 
@@ -39,7 +40,7 @@ class ScanModel {
   /// its place. False when there is none.
   bool remove(int id, JobContext& job);
   /// After scans were taken out: where none that is left is about as large as what they were scaled by, they
-  /// are scaled by the largest, and tried again.
+  /// are scaled by the largest, and tried again; so is what was refused for its size beside those.
   void settle_scale(JobContext& job);
   /// Tries to join the scan's group with every other group. True when it joined one.
   bool join(int id, JobContext& job);
@@ -106,6 +107,8 @@ class ScanModel {
     std::vector<SeenPin> pins;
     bool pins_expected = false;
     double own_scale_mm = 0, own_spacing_mm = 0;
+    /// Of one whose size is possible, and refused beside that of others: should they go.
+    std::shared_ptr<const ScanSurface> waiting;
     bool usable = false;
     std::optional<bool> self_similar;                         ///< once it was asked for
     std::optional<std::vector<ReliefRepeat>> relief_repeats;  ///< likewise
@@ -180,6 +183,11 @@ class ScanModel {
   [[nodiscard]] std::vector<int> heard_of(const std::vector<int>& ids, int id) const;
   /// Lays parts of scans where these lie.
   void place_parts(const std::vector<int>& ids);
+  /// Enters a scan's surface, whose size agrees with that of the scans before it.
+  void give_surface(Scan& scan, std::shared_ptr<const ScanSurface> surface, const ScanSize& size,
+                    const ScanSize& before);
+  /// The same of those that waited, where they agree with this size.
+  void let_waiting_in(const ScanSize& now);
   /// Makes the surfaces of all scans anew for another scale; what was searched before is searched again.
   void rescale(double scale_mm);
   [[nodiscard]] std::vector<int> members(int group) const;  ///< ascending ids
@@ -267,6 +275,10 @@ class ScanModel {
   bool join_from(int id, int group, const std::vector<RigidTransform>& starts, JobContext& job);
   bool join_by_hint(int hinted, JobContext& job);
   bool join_as_given(int id, int group, JobContext& job);
+
+  /// A scan that sees so much more than the first one (by its scale) shows what the object's size is: the
+  /// first was broken off, or saw a rim.
+  static constexpr double kMuchLarger = 2.0;
 
   RegistrationOptions options_;
   double scale_mm_ = 0;

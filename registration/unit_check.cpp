@@ -91,6 +91,11 @@ bool same_spacing(const ScanSize& a, const ScanSize& b) {
   return a.spacing_mm > 0 && b.spacing_mm > 0 && near(a.spacing_mm / b.spacing_mm, 1.0, kSpacingWithin);
 }
 
+bool sizes_agree(const ScanSize& a, const ScanSize& b, double most_ratio) {
+  return same_spacing(a, b) ||
+         (a.scale_mm <= most_ratio * b.scale_mm && b.scale_mm <= most_ratio * a.scale_mm);
+}
+
 std::string other_unit(const ScanSize& scan, const ScanSize& before) {
   const double by_size = before.scale_mm / scan.scale_mm;
   const double by_spacing =

@@ -21,6 +21,9 @@ struct ScanSize {
 /// object one of them shows. False where a spacing is not known.
 [[nodiscard]] bool same_spacing(const ScanSize& a, const ScanSize& b);
 
+/// Whether the two may be in one unit: samples as far apart, or sizes that differ by no more than this.
+[[nodiscard]] bool sizes_agree(const ScanSize& a, const ScanSize& b, double most_ratio);
+
 /// Of a scan whose size differs from that of the scans before it by more than anything but a unit explains.
 [[nodiscard]] std::string other_unit(const ScanSize& scan, const ScanSize& before);
 

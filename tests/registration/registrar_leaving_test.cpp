@@ -94,6 +94,31 @@ TEST(Registrar, WhatWasTakenOutIsNoMeasureForTheOthers) {
   }
 }
 
+/// The whole room, beside which a tablet is as small as in a wrong unit: those that were refused for it stood
+/// outside for good, until the session was opened anew.
+TEST(Registrar, WhatWasRefusedForItsSizeIsTakenInOnceWhatItWasRefusedBesideIsTakenOut) {
+  FieldScan room;
+  room.spacing_mm = 20.0;
+  room.half_mm = room.high_x_mm = room.high_y_mm = 1200;
+  room.low_x_mm = room.low_y_mm = -1200;
+  const auto surface = bumpy(23);
+  Registrar registrar;
+  JobContext job;
+  registrar.add(0, share(scan_field(bumpy(99), {}, room)), nullptr, job);
+  registrar.add(1, share(scan_field(surface, {}, {.seed = 2})), nullptr, job);
+  registrar.add(2, share(scan_field(surface, pose_of(8, 4, 40, {1, -2, 0}), {.seed = 9})), nullptr, job);
+  EXPECT_THAT(registrar.poses()[1].reason, HasSubstr("another unit"));
+  EXPECT_THAT(registrar.poses()[2].reason, HasSubstr("another unit"));
+  ASSERT_TRUE(registrar.remove(0, job));
+  for (const ScanPose& pose : registrar.poses()) {
+    EXPECT_EQ(pose.status, PoseStatus::kRegistered) << pose.id << pose.reason;
+  }
+  ASSERT_TRUE(registrar.finalize(job));
+  const std::vector<ScanPose> poses = registrar.poses();
+  ASSERT_EQ(poses.size(), 2U);
+  EXPECT_LT(error_mm(poses[1], poses[0], pose_of(8, 4, 40, {1, -2, 0}), {}), 0.05);
+}
+
 /// As a file in inches is read where nobody says so.
 RangeGrid in_inches(RangeGrid grid) {
   for (auto* values : {&grid.x, &grid.y, &grid.z}) {
