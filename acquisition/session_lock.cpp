@@ -57,18 +57,47 @@ bool lies_at(int fd, const fs::path& path) {
          file.st_ino == there.st_ino;
 }
 
+bool is_digit(char c) {
+  return c >= '0' && c <= '9';
+}
+bool is_in_name(char c) {
+  return is_digit(c) || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '-' || c == '.';
+}
+
+std::string this_computer() {
+  std::array<char, 256> name{};
+  if (::gethostname(name.data(), name.size() - 1) != 0) {
+    return {};
+  }
+  return {name.begin(), std::ranges::find_if_not(name, is_in_name)};
+}
+
+/// The program that wrote last, for people; empty where that is not known. On a disk that computers share it
+/// may run on another, where that number is somebody else's here.
+std::string told_writer(int fd) {
+  std::array<char, 300> said{};
+  if (::pread(fd, said.data(), said.size() - 1, 0) <= 0) {
+    return {};
+  }
+  auto* const after = std::ranges::find_if_not(said, is_digit);
+  const std::string process(said.begin(), after);
+  std::string computer;
+  if (*after == ' ') {
+    computer.assign(after + 1, std::find_if_not(after + 1, said.end(), is_in_name));
+  }
+  const bool is_here = computer.empty() || computer == this_computer();
+  return process.empty() ? std::string()
+                         : " (process " + process + (is_here ? "" : " of the computer " + computer) + ")";
+}
+
 std::unexpected<Error> held(int fd, const fs::path& folder) {
-  std::array<char, 32> pid{};
-  const ssize_t got = ::pread(fd, pid.data(), pid.size() - 1, 0);
-  std::string who(pid.data(), static_cast<std::size_t>(std::max<ssize_t>(0, got)));
-  who.erase(std::find_if_not(who.begin(), who.end(), [](char c) { return c >= '0' && c <= '9'; }), who.end());
   const std::string what =
       has_other_names(fd) ? "another program is writing to this session, or to one that shares its files "
                             "through hard links"
                           : "another program is writing to this session";
   // It goes away by itself: to do it again is of use, as with a package that another is making.
-  return fail(ErrorKind::kStorage, what + (who.empty() ? std::string() : " (process " + who + ")"),
-              folder.string(), "close it first, or open the session for reading only");
+  return fail(ErrorKind::kStorage, what + told_writer(fd), folder.string(),
+              "close it first, or open the session for reading only");
 }
 
 }  // namespace
@@ -118,9 +147,9 @@ bool FolderLock::is_of(const fs::path& folder) const {
 
 /// Only for words: the lock itself holds without.
 void FolderLock::note_process() const {
-  const std::string pid = std::to_string(::getpid()) + "\n";
+  const std::string who = std::to_string(::getpid()) + " " + this_computer() + "\n";
   if (::ftruncate(fd_, 0) == 0) {
-    [[maybe_unused]] const ssize_t written = ::pwrite(fd_, pid.data(), pid.size(), 0);
+    [[maybe_unused]] const ssize_t written = ::pwrite(fd_, who.data(), who.size(), 0);
   }
 }
 

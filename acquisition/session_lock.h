@@ -15,8 +15,9 @@ namespace dubsar::session {
 /// program puts a lock of its own in place, and what it locks is one session again.
 class FolderLock {
  public:
-  /// kStorage with the process number when another program (or another store of this one) has it. kBadInput
-  /// where a symbolic link, or what is no file, lies in place of the lock.
+  /// kStorage with the process number, and the computer where that is another, when another program (or
+  /// another store of this one) has it. kBadInput where a symbolic link, or what is no file, lies in place of
+  /// the lock.
   [[nodiscard]] static Result<FolderLock> take(const std::filesystem::path& folder);
   FolderLock(FolderLock&& other) noexcept;
   FolderLock& operator=(FolderLock&& other) noexcept;

@@ -5,6 +5,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 #include <fstream>
 #include <functional>
@@ -20,6 +21,7 @@ namespace {
 
 namespace fs = std::filesystem;
 using test::SessionDamageTest;
+using testing::HasSubstr;
 using testing::IsEmpty;
 
 constexpr auto kReadOnly = SessionStore::Access::kReadOnly;
@@ -134,6 +136,24 @@ TEST_F(SessionDamageTest, ALockThatIsAnotherFileIsNotWrittenTo) {
   expect_content(SessionStore::open(folder_, kReadOnly).value());
   fs::remove(lock);
   expect_content(SessionStore::open(folder_).value());
+}
+
+// Whoever would end the program by its number must not end another one here.
+TEST_F(SessionDamageTest, WhoHasTheLockIsToldWithItsComputerWhereThatIsAnother) {
+  const SessionStore writer = SessionStore::open(folder_).value();
+  const fs::path lock = folder_ / session::kLock;
+  const auto refusal = [&] {
+    const auto second = SessionStore::open(folder_);
+    EXPECT_FALSE(second);
+    return second ? std::string() : second.error().line();
+  };
+  EXPECT_THAT(refusal(), HasSubstr(" (process " + std::to_string(::getpid()) + ")"));
+  std::ofstream(lock) << "4711 no-such.computer\n";
+  EXPECT_THAT(refusal(), HasSubstr(" (process 4711 of the computer no-such.computer)"));
+  std::ofstream(lock) << "4711\n";  // as programs before this one wrote it
+  EXPECT_THAT(refusal(), HasSubstr(" (process 4711)"));
+  std::ofstream(lock) << std::string(400, '7') << "\x1b[2J";
+  EXPECT_THAT(refusal(), testing::Not(HasSubstr("\x1b")));
 }
 
 TEST_F(SessionDamageTest, TablesThatLeadOutOfTheSessionAreNotFollowed) {

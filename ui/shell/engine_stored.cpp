@@ -42,6 +42,7 @@ constexpr EnginePhrase kStored[] = {
      "hat"},
     {"another program is writing to this session", "ein anderes Programm schreibt in diese Sitzung"},
     {" (process ", " (Prozess "},
+    {" of the computer ", " des Rechners "},
     {"a link, or no file: the session is not locked through it",
      "ein Verweis, oder keine Datei: die Sitzung wird nicht darüber gesperrt"},
     {"take it away while no program writes to this session: it holds nothing",
