@@ -118,7 +118,8 @@ std::filesystem::path temporary_beside(const std::filesystem::path& folder) {
 
 Status write_file_atomically(const std::filesystem::path& path, const ByteProducer& produce) {
   struct stat existing {};
-  if (::stat(path.c_str(), &existing) == 0 && !S_ISREG(existing.st_mode)) {
+  const bool exists = ::stat(path.c_str(), &existing) == 0;
+  if (exists && !S_ISREG(existing.st_mode)) {
     // Wrong words, no disk that refuses: to do it again is of no use.
     return S_ISDIR(existing.st_mode)
                ? Status(fail(ErrorKind::kUsage, "cannot write: it is a folder", path.string(), kNameAFile))
@@ -136,6 +137,10 @@ Status write_file_atomically(const std::filesystem::path& path, const ByteProduc
   }
   Descriptor file(fd);
   Unlinker unlinker(temporary.string());
+  if (exists) {
+    // Some file systems have no such rights, and refuse. Who writes it may do so again.
+    [[maybe_unused]] const int kept = ::fchmod(file.get(), (existing.st_mode & 0777U) | S_IWUSR);
+  }
   if (Status done =
           produce([&](std::span<const std::byte> bytes) { return write_all(file.get(), path, bytes); });
       !done) {
@@ -160,6 +165,13 @@ Status write_file_atomically(const std::filesystem::path& path, std::span<const 
 
 Status write_file_atomically(const std::filesystem::path& path, std::string_view text) {
   return write_file_atomically(path, std::as_bytes(std::span(text.data(), text.size())));
+}
+
+Status write_behind_link(const std::filesystem::path& path, std::string_view text) {
+  std::error_code nowhere;
+  const std::filesystem::path file =
+      std::filesystem::is_symlink(path, nowhere) ? std::filesystem::canonical(path, nowhere) : path;
+  return write_file_atomically(file.empty() ? path : file, text);
 }
 
 std::filesystem::path folder_of(const std::filesystem::path& file) {

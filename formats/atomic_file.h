@@ -24,12 +24,17 @@ using ByteProducer = std::function<Status(const ByteSink&)>;
 inline constexpr std::string_view kTemporaryPrefix = ".dubsar-tmp-";
 
 /// Replaces `path` by the bytes, or leaves it as it was: writes a temporary file beside it, syncs it, renames
-/// it and syncs the folder. After success the file survives a power loss. On failure (ErrorKind::kStorage) no
+/// it and syncs the folder. Who may read the file that was there may read the new one, nobody else. After
+/// success the file survives a power loss. On failure (ErrorKind::kStorage) no
 /// temporary file stays behind. A device or pipe at `path` is written to directly; kUsage: nobody reads it.
 [[nodiscard]] Status write_file_atomically(const std::filesystem::path& path,
                                            std::span<const std::byte> bytes);
 [[nodiscard]] Status write_file_atomically(const std::filesystem::path& path, std::string_view text);
 [[nodiscard]] Status write_file_atomically(const std::filesystem::path& path, const ByteProducer& produce);
+
+/// The same, but where the name is a link to a file, that one is replaced and the link stays: of what people
+/// keep elsewhere, and share.
+[[nodiscard]] Status write_behind_link(const std::filesystem::path& path, std::string_view text);
 
 /// The folder that a file lies in: "." for a name alone.
 [[nodiscard]] std::filesystem::path folder_of(const std::filesystem::path& file);

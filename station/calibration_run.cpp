@@ -150,7 +150,7 @@ Result<CalibrateOutcome> calibrate_folder(const CalibrateRequest& request, const
   rig.temperature_c = request.temperature_c ? request.temperature_c : set->temperature_c;
   rig.note = set->note;
   if (!request.out.empty()) {
-    if (Status status = write_file_atomically(request.out, calibration_to_json(rig)); !status) {
+    if (Status status = write_behind_link(request.out, calibration_to_json(rig)); !status) {
       return std::unexpected(status.error());
     }
   }

@@ -11,7 +11,7 @@ Status write_settings_file(const std::filesystem::path& file, std::string_view t
   if (Status made = make_folder(folder_of(file)); !made) {
     return made;
   }
-  return write_file_atomically(file, text);
+  return write_behind_link(file, text);
 }
 
 }  // namespace dubsar

@@ -10,7 +10,8 @@
 namespace dubsar {
 
 /// Replaces what a face keeps for its next start, in a folder that is made where there is none yet: by the
-/// whole text, also after a power loss, or not at all. Errors: kStorage, kUsage where a folder lies there.
+/// whole text, also after a power loss, or not at all. A link to a file stays one. Errors: kStorage, kUsage
+/// where a folder lies there.
 [[nodiscard]] Status write_settings_file(const std::filesystem::path& file, std::string_view text);
 
 }  // namespace dubsar

@@ -53,6 +53,44 @@ TEST(AtomicFile, WritesAndReplaces) {
   EXPECT_EQ(folder.file_count(), 1U);
 }
 
+TEST(AtomicFile, LetsNobodyReadTheNewFileWhoMightNotReadTheOldOne) {
+  const ScratchFolder folder;
+  const auto rights = [&] {
+    struct stat file {};
+    EXPECT_EQ(::stat((folder / "a").c_str(), &file), 0);
+    return file.st_mode & 0777U;
+  };
+  const mode_t before = ::umask(022);
+  EXPECT_TRUE(write_file_atomically(folder / "a", "first"));
+  EXPECT_EQ(rights(), 0644U);
+  for (const auto& [was, is] : {std::pair<mode_t, mode_t>{0600, 0600}, {0664, 0664}, {0440, 0640}}) {
+    ::chmod((folder / "a").c_str(), was);
+    EXPECT_TRUE(write_file_atomically(folder / "a", "again"));
+    EXPECT_EQ(rights(), is);
+  }
+  ::umask(before);
+}
+
+TEST(AtomicFile, ALinkStaysWhereThatIsAskedFor) {
+  const ScratchFolder folder;
+  ASSERT_TRUE(std::filesystem::create_directory(folder / "shared"));
+  ASSERT_TRUE(write_file_atomically(folder / "shared/a", "old"));
+  std::filesystem::create_symlink("shared/a", folder / "link");
+  std::filesystem::create_symlink("nothing", folder / "dangling");
+  ASSERT_TRUE(write_behind_link(folder / "link", "new"));
+  EXPECT_TRUE(std::filesystem::is_symlink(folder / "link"));
+  EXPECT_EQ(read_whole_file(folder / "shared/a").value(), "new");
+  for (const char* name : {"dangling", "plain"}) {
+    ASSERT_TRUE(write_behind_link(folder / name, "new")) << name;
+    EXPECT_EQ(read_whole_file(folder / name).value(), "new") << name;
+  }
+  EXPECT_FALSE(std::filesystem::exists(folder / "nothing"));
+  // Elsewhere it is replaced: what is stored in a session lies in the session.
+  ASSERT_TRUE(write_file_atomically(folder / "link", "newer"));
+  EXPECT_FALSE(std::filesystem::is_symlink(folder / "link"));
+  EXPECT_EQ(read_whole_file(folder / "shared/a").value(), "new");
+}
+
 TEST(AtomicFile, KeepsTheOldFileWhenTheDiskIsFull) {
   const ScratchFolder folder;
   ASSERT_TRUE(write_file_atomically(folder / "a", "old"));

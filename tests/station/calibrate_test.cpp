@@ -87,6 +87,25 @@ TEST_F(Calibrate, ATurntableWithTheTemperatureOfTheRoom) {
   EXPECT_EQ(calibrate({"--temperature", "900"}).status, 2);
 }
 
+/// Of several stations that read one calibration all have the new one.
+TEST_F(Calibrate, ALinkToTheCalibrationStaysAndTheFileBehindItIsTheNewOne) {
+  list(9, 3);
+  const fs::path shared = folder_.path() / "shared.json";
+  RigCalibration before = sim::frame_rig({});
+  before.made_at = "2026-01-02T03:04:05Z";
+  before.camera_serial = "SIM-CAMERA";
+  ASSERT_TRUE(write_file_atomically(shared, calibration_to_json(before)));
+  fs::create_symlink("shared.json", out());
+  const Outcome made = calibrate();
+  ASSERT_EQ(made.status, 0) << made.err;
+  EXPECT_TRUE(fs::is_symlink(out()));
+  const Result<std::string> text = read_whole_file(shared);
+  ASSERT_TRUE(text.has_value());
+  const Result<RigCalibration> now = parse_calibration(*text, "shared.json");
+  ASSERT_TRUE(now.has_value()) << now.error().line();
+  EXPECT_NE(now->made_at, before.made_at);
+}
+
 TEST_F(Calibrate, TheCalibrationOfAnotherCameraIsNotReplaced) {
   list(2, 3);
   RigCalibration other = sim::frame_rig({});
