@@ -29,6 +29,17 @@ ln -s "$folder.far/scan.ply" "$folder/three/model.ply"
 listed=$("$workflows/list-tablets" "$folder" 2>"$folder/said")
 [ "$listed" = $'export/one\nlinked\nmuseum/a b\nmuseum/c\nsession\nsub/mesh/two\nthree' ] || fail "list-tablets: $listed"
 [[ $(cat "$folder/said") == "list-tablets: lost: a session without its session.sqlite"* ]] || fail "list-tablets: $(cat "$folder/said")"
+# What comes again through a link is one tablet, by the name without a link where it has one; links alone give it the first.
+mkdir "$folder.far/more"
+cp -r "$folder/three" "$folder.far/more/four"
+ln -s "$folder/session" "$folder/again"
+ln -s "$folder.far/session" "$folder/zlinked"
+ln -s ../museum "$folder/sub/museum"
+ln -s "$folder.far/more" "$folder/more"
+ln -s "$folder.far/more/four" "$folder/five"
+again=$("$workflows/list-tablets" "$folder" 2>/dev/null)
+[ "$again" = $'export/one\nfive\nlinked\nmuseum/a b\nmuseum/c\nsession\nsub/mesh/two\nthree' ] || fail "list-tablets, of what comes again: $again"
+rm "$folder"/{again,zlinked,sub/museum,more,five}
 # One that lost its backup, too, is known by what else a session has.
 mkdir -p "$folder"/lost.sums/{grids,mesh} "$folder"/lost.lock "$folder"/lost.link "$folder"/lost.results
 touch "$folder"/lost.sums/{session.sums,mesh/model.ply} "$folder"/lost.lock/session.lock
