@@ -147,6 +147,7 @@ Status Camera::begin(std::uint32_t pool) {
     counts_.pool = buffers;
     counts_.reconnections += was_gone ? 1 : 0;
     count_.begin();
+    encoder_.begin();
     clock_ =
         CameraClock(ARV_IS_GV_DEVICE(device_) ? latched_offset_ns(ARV_GV_DEVICE(device_)) : std::nullopt);
   }
@@ -238,12 +239,15 @@ Result<std::optional<Taken>> Camera::next(Clock::time_point until) {
     out.id = step.id;
     out.lost = step.lost;
     out.camera_restarted = step.camera_restarted;
+    if (out.camera_restarted) {
+      encoder_.begin();
+    }
     if (chunks_ != nullptr && arv_buffer_has_chunks(buffer)) {
       GErrorHolder error;
       const gint64 count =
           arv_chunk_parser_get_integer_value(chunks_, buffer, "ChunkEncoderValue", error.fill());
       if (!error) {
-        out.encoder = count;
+        out.encoder = encoder_.take(count);
       }
     }
     const std::lock_guard lock(mutex_);

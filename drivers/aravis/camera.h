@@ -14,6 +14,7 @@
 
 #include "core/result.h"
 #include "drivers/aravis/camera_clock.h"
+#include "drivers/aravis/encoder_count.h"
 #include "drivers/aravis/frame_count.h"
 #include "drivers/aravis/presence.h"
 #include "drivers/aravis/scan3d.h"
@@ -55,9 +56,9 @@ struct Taken {
   std::uint64_t lost = 0;  ///< frames that did not come before this one
   std::int64_t timestamp_ns = 0;
   std::int64_t device_timestamp_ns = 0;
-  std::optional<std::int64_t> encoder;
-  bool camera_restarted = false;  ///< the first since: its counts begin elsewhere
-  bool late = false;              ///< waited longer than a frame takes
+  std::optional<std::int64_t> encoder;  ///< likewise
+  bool camera_restarted = false;        ///< the first since: its counts begin elsewhere
+  bool late = false;                    ///< waited longer than a frame takes
 };
 
 /// A GigE Vision or USB3 Vision camera from open to close, plugged in or not. The stream's own thread puts
@@ -163,6 +164,7 @@ class Camera {
   std::uint64_t payload_ = 0;                  ///< bytes of a buffer
   Status ended_;
   FrameCount count_;
+  EncoderCount encoder_;
   CameraClock clock_{std::nullopt};
   dubsar_frame_counters counts_{};
   bool said_room_ = false;
