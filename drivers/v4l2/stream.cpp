@@ -199,9 +199,8 @@ Result<std::optional<dubsar_frame>> Stream::next(Clock::time_point until) {
       if (why != EAGAIN && why != EIO && why != EINTR) {
         return std::unexpected(error_of(why, "the stream broke off", node_->path()));
       }
-      if (why == EIO) {  // one frame went wrong on the way, says the kernel
-        const std::lock_guard lock(mutex_);
-        ++counts_.lost;
+      if (why == EIO) {
+        numbers_.went_wrong();
       }
       if (Clock::now() >= until) {
         return std::nullopt;
@@ -236,12 +235,8 @@ Result<std::optional<dubsar_frame>> Stream::next(Clock::time_point until) {
     if ((buffer.flags & V4L2_BUF_FLAG_ERROR) != 0) {
       frame.flags |= DUBSAR_FRAME_INCOMPLETE;
     }
-    const std::uint32_t step = last_sequence_ ? buffer.sequence - *last_sequence_ : 1U;
-    // Some cameras do not count; a step back or none is taken for the next frame.
-    const bool counts = step >= 1 && step < 1U << 31U;
-    id_ += counts ? step : 1;
-    last_sequence_ = buffer.sequence;
-    frame.id = id_;
+    const FrameNumbers::Step step = numbers_.take(buffer.sequence);
+    frame.id = step.id;
     frame.timestamp_ns = now;
     const std::int64_t stamp =
         std::int64_t{buffer.timestamp.tv_sec} * 1000000000 + std::int64_t{buffer.timestamp.tv_usec} * 1000;
@@ -261,7 +256,7 @@ Result<std::optional<dubsar_frame>> Stream::next(Clock::time_point until) {
     const std::lock_guard lock(mutex_);
     lent_[place] = true;
     ++counts_.delivered;
-    counts_.lost += counts ? step - 1 : 0;
+    counts_.lost += step.lost;
     counts_.late += (frame.flags & DUBSAR_FRAME_LATE) != 0 ? 1 : 0;
     counts_.incomplete += (frame.flags & DUBSAR_FRAME_INCOMPLETE) != 0 ? 1 : 0;
     return frame;

@@ -12,6 +12,7 @@
 
 #include "core/result.h"
 #include "drivers/driver.h"
+#include "drivers/v4l2/frame_numbers.h"
 #include "drivers/v4l2/modes.h"
 #include "drivers/v4l2/node.h"
 
@@ -74,8 +75,7 @@ class Stream {
   Counts counts_;
   bool running_ = false;
   bool stopped_ = false;
-  std::optional<std::uint32_t> last_sequence_;
-  std::uint64_t id_ = 0;
+  FrameNumbers numbers_;  ///< of the thread that calls next()
 };
 
 }  // namespace dubsar::v4l2
