@@ -176,7 +176,7 @@ Status Camera::start(std::uint32_t pool) {
   const std::uint32_t buffers =
       asked == 0 ? pool_depth(mode_.rate_hz, std::uint64_t{stride_} * mode_.height, kMostBuffers)
                  : std::clamp(asked, 2U, kMostBuffers);
-  Result<std::shared_ptr<Stream>> stream = Stream::start(*node_, mode_, stride_, buffers);
+  Result<std::shared_ptr<Stream>> stream = Stream::start(*node_, mode_, limited_range_, stride_, buffers);
   if (!stream) {
     if (!node_->alive()) {
       node_.reset();

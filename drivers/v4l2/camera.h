@@ -74,6 +74,7 @@ class Camera {
   Region region_;                  ///< of no size: the whole picture
   std::optional<double> rate_hz_;  ///< that was set
   std::uint32_t stride_ = 0;
+  bool limited_range_ = false;
   std::vector<Control> controls_;
   std::map<std::uint32_t, dubsar_value> set_here_;  ///< by control; set again after the camera was gone
 

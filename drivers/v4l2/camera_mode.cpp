@@ -50,6 +50,7 @@ Status Camera::put_format(std::uint32_t width, std::uint32_t height) {
   mode_.width = width;
   mode_.height = height;
   stride_ = std::max(got.bytesperline, got.width * use_of(asked).bytes_per_pixel);
+  limited_range_ = has_limited_range(chosen_.fourcc, got.quantization);
   return {};
 }
 

@@ -5,6 +5,7 @@
 #include <linux/videodev2.h>
 
 #include <algorithm>
+#include <array>
 #include <tuple>
 
 #include "core/number_text.h"
@@ -75,6 +76,34 @@ FormatUse use_of(std::uint32_t fourcc) {
     default:
       return {Handling::kConverted, DUBSAR_PIXEL_MONO8, 1, 0};
   }
+}
+
+bool has_limited_range(std::uint32_t fourcc, std::uint32_t quantization) {
+  switch (use_of(fourcc).handling) {
+    case Handling::kLumaPlane:
+    case Handling::kPackedLuma:
+      return quantization == V4L2_QUANTIZATION_LIM_RANGE;
+    case Handling::kConverted:
+      return fourcc != V4L2_PIX_FMT_PJPG && fourcc != V4L2_PIX_FMT_JPGL;  // JPEG, whose luma has all values
+    case Handling::kMono:
+    case Handling::kCompressed:
+      break;
+  }
+  return false;
+}
+
+void expand_range(std::span<std::uint8_t> luma) {
+  static constexpr std::array<std::uint8_t, 256> kExpanded = [] {
+    constexpr int kBlack = 16;
+    constexpr int kSteps = 219;
+    std::array<std::uint8_t, 256> out{};
+    for (int k = 0; k < 256; ++k) {
+      const int above = std::clamp(k - kBlack, 0, kSteps);
+      out[static_cast<std::size_t>(k)] = static_cast<std::uint8_t>((2 * 255 * above + kSteps) / (2 * kSteps));
+    }
+    return out;
+  }();
+  std::ranges::transform(luma, luma.begin(), [](std::uint8_t value) { return kExpanded[value]; });
 }
 
 std::string name_of(std::uint32_t fourcc) {

@@ -41,6 +41,13 @@ struct FormatUse {
 
 [[nodiscard]] FormatUse use_of(std::uint32_t fourcc);
 
+/// Whether the luma of this format has the range of television, from 16 to 235. `quantization`: what the
+/// camera says of it. Of YUV it has to say so: most that say nothing send all values. What libv4l2 makes of
+/// RGB and Bayer pixels always has that range.
+[[nodiscard]] bool has_limited_range(std::uint32_t fourcc, std::uint32_t quantization);
+/// Such luma from 0 to 255, in place: what is saturated reads so.
+void expand_range(std::span<std::uint8_t> luma);
+
 /// "GREY", "Y16 ", ...; and back, short words filled with blanks.
 [[nodiscard]] std::string name_of(std::uint32_t fourcc);
 [[nodiscard]] std::optional<std::uint32_t> fourcc_from(const std::string& name);

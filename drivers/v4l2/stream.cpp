@@ -46,11 +46,12 @@ Error gone(const Node& node) {
 
 }  // namespace
 
-Result<std::shared_ptr<Stream>> Stream::start(const Node& node, const Mode& mode, std::uint32_t stride,
-                                              std::uint32_t pool) {
+Result<std::shared_ptr<Stream>> Stream::start(const Node& node, const Mode& mode, bool limited,
+                                              std::uint32_t stride, std::uint32_t pool) {
   auto stream = std::shared_ptr<Stream>(new Stream(node));
   stream->mode_ = mode;
   stream->use_ = use_of(mode.fourcc);
+  stream->limited_ = limited;
   stream->stride_ = stride;
   if (const Status taken = stream->take_buffers(pool); !taken) {
     return std::unexpected(taken.error());
@@ -87,8 +88,8 @@ Status Stream::take_buffers(std::uint32_t pool) {
     mapped_.push_back({at, buffer.length});
   }
   const bool compressed = use_.handling == Handling::kCompressed;
-  const bool copied =
-      compressed || use_.handling == Handling::kPackedLuma || use_.handling == Handling::kConverted;
+  const bool copied = compressed || limited_ || use_.handling == Handling::kPackedLuma ||
+                      use_.handling == Handling::kConverted;
   const std::size_t pixels = std::size_t{mode_.width} * mode_.height;
   const std::size_t needed = compressed                              ? 1
                              : use_.handling == Handling::kConverted ? pixels
@@ -125,6 +126,28 @@ std::optional<std::uint32_t> Stream::reserve(Clock::time_point until) {
   return static_cast<std::uint32_t>(place);
 }
 
+/// Brings the luma of a filled buffer, whose lines are so many bytes apart, into our own pool. False when it
+/// is no picture.
+bool Stream::copy_luma(const std::uint8_t* from, std::size_t line, std::uint32_t used,
+                       std::vector<std::uint8_t>& to) const {
+  if (use_.handling == Handling::kCompressed) {
+    std::string why;
+    return decode_luma({from, used}, mode_.width, mode_.height, to, why);
+  }
+  const std::size_t apart = use_.bytes_per_pixel;
+  std::uint8_t* at = to.data();
+  for (std::uint32_t row = 0; row < mode_.height; ++row) {
+    const std::uint8_t* const in = from + row * line + use_.luma_at;
+    for (std::uint32_t col = 0; col < mode_.width; ++col) {
+      *at++ = in[apart * col];
+    }
+  }
+  if (limited_) {
+    expand_range(to);
+  }
+  return true;
+}
+
 /// Where the pixels of a filled buffer are: in it, or in a copy at `place`. Nothing when they are no picture.
 std::optional<dubsar_frame> Stream::describe(const void* buffer, std::uint32_t used, std::uint32_t place) {
   dubsar_frame frame{};
@@ -134,39 +157,22 @@ std::optional<dubsar_frame> Stream::describe(const void* buffer, std::uint32_t u
   frame.height = mode_.height;
   frame.pixel_format = use_.pixel_format;
   const auto* from = static_cast<const std::uint8_t*>(buffer);
+  // What libv4l2 converted has no gaps between its lines.
+  const std::uint64_t line = use_.handling == Handling::kConverted ? mode_.width : stride_;
+  std::uint64_t whole = line * (mode_.height - 1) + std::uint64_t{mode_.width} * use_.bytes_per_pixel;
   if (copies_.empty()) {
     frame.pixels = from;
     frame.stride_bytes = stride_;
-    if (used < (frame.height - 1) * frame.stride_bytes + frame.width * use_.bytes_per_pixel) {
-      frame.flags |= DUBSAR_FRAME_INCOMPLETE;
-    }
   } else {
-    std::uint8_t* to = copies_[place].data();
-    frame.pixels = to;
+    if (!copy_luma(from, line, used, copies_[place])) {
+      return std::nullopt;
+    }
+    frame.pixels = copies_[place].data();
     frame.stride_bytes = mode_.width;
-    if (use_.handling == Handling::kCompressed) {
-      std::string why;
-      if (!decode_luma({from, used}, mode_.width, mode_.height, copies_[place], why)) {
-        return std::nullopt;
-      }
-    } else if (use_.handling == Handling::kPackedLuma) {
-      for (std::uint32_t row = 0; row < mode_.height; ++row) {
-        const std::uint8_t* in = from + std::size_t{row} * stride_ + use_.luma_at;
-        for (std::uint32_t col = 0; col < mode_.width; ++col) {
-          *to++ = in[2 * std::size_t{col}];
-        }
-      }
-    } else {
-      std::memcpy(to, from, std::size_t{mode_.width} * mode_.height);
-    }
-    const std::uint64_t whole =
-        use_.handling == Handling::kCompressed
-            ? used
-            : std::uint64_t{mode_.height} *
-                  (use_.handling == Handling::kPackedLuma ? 2 * mode_.width : mode_.width);
-    if (used < whole) {
-      frame.flags |= DUBSAR_FRAME_INCOMPLETE;
-    }
+    whole = use_.handling == Handling::kCompressed ? used : whole;
+  }
+  if (used < whole) {
+    frame.flags |= DUBSAR_FRAME_INCOMPLETE;
   }
   frame.size_bytes = std::uint64_t{frame.stride_bytes} * frame.height;
   return frame;

@@ -27,13 +27,14 @@ struct Counts {
 };
 
 /// A running stream of a camera: its mapped buffers are the pool, and the kernel fills them; there is no
-/// thread here. Frames that need no work are lent where they lie; packed, converted or compressed ones are
-/// first brought into a pool of our own, on the thread that asks for them. One thread calls next() and
-/// stop(); give_back() is for any.
+/// thread here. Frames that need no work are lent where they lie; packed, converted, compressed or expanded
+/// ones are first brought into a pool of our own, on the thread that asks for them. One thread calls next()
+/// and stop(); give_back() is for any.
 class Stream {
  public:
-  /// The node has the mode set already. kDevice when buffers or stream are refused.
-  [[nodiscard]] static Result<std::shared_ptr<Stream>> start(const Node& node, const Mode& mode,
+  /// The node has the mode set already; `limited`: has_limited_range(), which is expanded. kDevice when
+  /// buffers or stream are refused.
+  [[nodiscard]] static Result<std::shared_ptr<Stream>> start(const Node& node, const Mode& mode, bool limited,
                                                              std::uint32_t stride, std::uint32_t pool);
   ~Stream();
   Stream(const Stream&) = delete;
@@ -62,10 +63,13 @@ class Stream {
   std::optional<std::uint32_t> reserve(Clock::time_point until);
   [[nodiscard]] std::optional<dubsar_frame> describe(const void* buffer, std::uint32_t used,
                                                      std::uint32_t place);
+  bool copy_luma(const std::uint8_t* from, std::size_t line, std::uint32_t used,
+                 std::vector<std::uint8_t>& to) const;
 
   const Node* node_;
   Mode mode_;
   FormatUse use_;
+  bool limited_ = false;
   std::uint32_t stride_ = 0;
   std::vector<Mapped> mapped_;
   std::vector<std::vector<std::uint8_t>> copies_;  ///< own pool, of formats that are not lent as they are

@@ -3,6 +3,7 @@
 // What the v4l2: driver has a camera send: pixel format, size, rate, region.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <linux/videodev2.h>
 
 #include <algorithm>
 
@@ -39,6 +40,29 @@ TEST(V4l2Modes, PreferUncompressedMonoThenPixelsThenRate) {
   EXPECT_EQ(none.error().kind, ErrorKind::kUsage);
   EXPECT_THAT(none.error().line(), HasSubstr("MJPG 1920x1080 at 60/s"));
   EXPECT_FALSE(v4l2::choose({}, {}, "cam"));
+}
+
+TEST(V4l2Modes, KnowWhoseLumaHasTheRangeOfTelevision) {
+  const auto limited = [](const char* name, std::uint32_t quantization) {
+    return v4l2::has_limited_range(*v4l2::fourcc_from(name), quantization);
+  };
+  for (const char* yuv : {"YUYV", "UYVY", "NV12"}) {
+    EXPECT_TRUE(limited(yuv, V4L2_QUANTIZATION_LIM_RANGE)) << yuv;
+    EXPECT_FALSE(limited(yuv, V4L2_QUANTIZATION_FULL_RANGE)) << yuv;
+    EXPECT_FALSE(limited(yuv, V4L2_QUANTIZATION_DEFAULT)) << yuv;  // webcams say nothing, and send all values
+  }
+  for (const char* converted : {"RGB3", "BA81"}) {  // by libv4l2, whatever the camera says of its own pixels
+    EXPECT_TRUE(limited(converted, V4L2_QUANTIZATION_FULL_RANGE)) << converted;
+  }
+  for (const char* whole : {"GREY", "Y16", "MJPG", "PJPG"}) {
+    EXPECT_FALSE(limited(whole, V4L2_QUANTIZATION_LIM_RANGE)) << whole;
+  }
+}
+
+TEST(V4l2Modes, WhatIsSaturatedOfALimitedRangeReadsSo) {
+  std::vector<std::uint8_t> luma{0, 16, 17, 125, 126, 234, 235, 255};
+  v4l2::expand_range(luma);
+  EXPECT_THAT(luma, testing::ElementsAre(0, 0, 1, 127, 128, 254, 255, 255));
 }
 
 TEST(V4l2Modes, KeysAreWordsOfNames) {
