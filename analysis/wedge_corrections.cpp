@@ -26,6 +26,19 @@ constexpr double kLeastShareMerged = 0.1;
 constexpr double kAroundSeedMm = 0.15;
 constexpr double kAroundSeedSpacings = 3.0;
 
+/// [bodies] How far that is on each: a coarse one says nothing of a fine one.
+std::vector<double> around_seeds_mm(const SurfaceFields& fields, const std::vector<float>& area_mm2) {
+  std::vector<std::vector<float>> areas(fields.body_count());
+  for (std::size_t v = 0; v < area_mm2.size(); ++v) {
+    areas[fields.body_of.empty() ? 0 : fields.body_of[v]].push_back(area_mm2[v]);
+  }
+  std::vector<double> out;
+  for (const std::vector<float>& some : areas) {
+    out.push_back(std::max(kAroundSeedMm, kAroundSeedSpacings * mean_spacing_mm(some)));
+  }
+  return out;
+}
+
 using Vertices = std::vector<std::uint32_t>;
 using Made = std::expected<void, std::string>;
 
@@ -40,7 +53,7 @@ class Corrector {
         findings_(findings),
         measure_quiet_(mesh, graph, fields, options, findings.area_mm2, false),
         measure_noisy_(mesh, graph, fields, options, findings.area_mm2, true),
-        around_seed_mm_(std::max(kAroundSeedMm, kAroundSeedSpacings * mean_spacing_mm(findings.area_mm2))),
+        around_seed_mm_(around_seeds_mm(fields, findings.area_mm2)),
         slot_(mesh.positions.size(), -1),
         ids_(*ids),
         set_(*set) {
@@ -96,6 +109,10 @@ class Corrector {
     return ids;
   }
 
+  [[nodiscard]] std::size_t body_of(std::uint32_t v) const {
+    return fields_.body_of.empty() ? 0 : fields_.body_of[v];
+  }
+
   [[nodiscard]] bool is_of(std::uint32_t v, const std::set<int>& ids) const {
     return set_.wedge_of[v] >= 0 && ids.contains(set_.wedge_of[v]);
   }
@@ -149,8 +166,8 @@ class Corrector {
       return std::unexpected("too few vertices of the mesh");
     }
     // As the body was measured by itself, however rough another one is.
-    const std::size_t body = fields_.body_of.empty() ? 0 : fields_.body_of[vertices.front()];
-    const HollowMeasure& of_body = findings_.is_noisy[body] != 0 ? measure_noisy_ : measure_quiet_;
+    const bool noisy = findings_.is_noisy[body_of(vertices.front())] != 0;
+    const HollowMeasure& of_body = noisy ? measure_noisy_ : measure_quiet_;
     auto found = of_body.measure(vertices, &slot_);
     if (found && found->vertices.empty()) {
       return std::unexpected("nothing of the clay lies on its faces");
@@ -251,7 +268,8 @@ class Corrector {
     std::vector<WedgeCandidate> made;
     for (std::size_t k = 0; k < correction.into_mm.size(); ++k) {
       const auto is_there = [&](std::uint32_t v) {
-        return (mesh_.positions[v].cast<double>() - correction.into_mm[k]).norm() <= around_seed_mm_;
+        return (mesh_.positions[v].cast<double>() - correction.into_mm[k]).norm() <=
+               around_seed_mm_[body_of(v)];
       };
       const auto deepest = std::ranges::find_if(left, is_there);
       if (deepest == left.end()) {
@@ -324,7 +342,7 @@ class Corrector {
   const WedgeFindings& findings_;
   HollowMeasure measure_quiet_;
   HollowMeasure measure_noisy_;
-  double around_seed_mm_;
+  std::vector<double> around_seed_mm_;  ///< of each body
   std::vector<std::int32_t> slot_;
   std::vector<WedgeCandidate> company_;  ///< all that are judged together, without their vertices
   WedgeIds& ids_;

@@ -190,6 +190,31 @@ TEST(WedgeCorrections, GoByTheirOwnBodyAlone) {
   EXPECT_EQ(beside.depth_point_mm, expected.depth_point_mm) << "nor does the noise there";
 }
 
+TEST(WedgeCorrections, ASplitLooksAroundItsPlacesAsItsOwnBodyIsSpaced) {
+  const int id = lone_wedge();
+  ASSERT_GE(id, 0);
+  SurfaceFields fields = found().fields;
+  fields.further_surfaces = {fields.surface};
+  fields.body_of.assign(found().mesh.positions.size(), 0);
+  for (const std::uint32_t v : vertices_of(found().set, id)) {
+    fields.body_of[v] = 1;
+  }
+  WedgeFindings findings = found().findings;
+  findings.is_noisy.push_back(0);
+  for (std::size_t v = 0; v < fields.body_of.size(); ++v) {
+    findings.area_mm2[v] *= fields.body_of[v] == 0 ? 1000.0F : 1.0F;  // as of a coarse mesh
+  }
+  const Wedge& wedge = *wedge_of_id(found().set, id);
+  WedgeOptions options;
+  WedgeCorrection& split = options.corrections.emplace_back();
+  split.kind = CorrectionKind::kSplit;
+  split.at_mm = {wedge.depth_point_mm};
+  split.into_mm.assign(2, wedge.depth_point_mm + 2.0 * wedge.surface_normal);  // in the air
+  const WedgeSet set = settle_wedges(found().mesh, found().graph, fields, options, findings);
+  ASSERT_EQ(set.lost.size(), 1U);
+  EXPECT_THAT(set.lost.front().reason, HasSubstr("does not lie in the wedge: number 1"));
+}
+
 TEST(WedgeCorrections, JudgeTheirOwnWedgeAloneAsItWouldBeAmongAll) {
   std::vector<WedgeCandidate> all = found().findings.candidates;
   std::erase_if(all, [](const WedgeCandidate& c) { return !c.rejected.empty(); });
