@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <map>
+#include <set>
 #include <tuple>
 
 namespace dubsar {
@@ -12,19 +13,29 @@ namespace {
 
 struct Cluster {
   SeenPin pin;
-  std::map<int, int> labels;  ///< how many tips carry each
+  std::map<int, int> labels;  ///< how many measurements carry each
+  std::set<int> measured_as;  ///< of those that have a number
+  std::set<int> named_as;     ///< likewise, of those with a label
 };
 
-void add(Cluster& cluster, const SeenPin& tip) {
+/// Whether a measurement has not been counted here.
+bool is_new(std::optional<int> measured_as, std::set<int>& counted) {
+  return !measured_as || counted.insert(*measured_as).second;
+}
+
+void add(Cluster& cluster, const SeenPin& tip, std::optional<int> measured_as) {
+  if (tip.label >= 0 && is_new(measured_as, cluster.named_as)) {
+    ++cluster.labels[tip.label];
+  }
+  if (!is_new(measured_as, cluster.measured_as)) {
+    return;
+  }
   const double before = cluster.pin.placements;
   const double after = before + 1;
   cluster.pin.position_mm = (before * cluster.pin.position_mm + tip.position_mm) / after;
   cluster.pin.covariance_mm2 =
       (before * before * cluster.pin.covariance_mm2 + tip.covariance_mm2) / (after * after);
   cluster.pin.placements += 1;
-  if (tip.label >= 0) {
-    ++cluster.labels[tip.label];
-  }
 }
 
 }  // namespace
@@ -51,14 +62,14 @@ std::vector<SeenPin> merged_pins(std::span<const PlacedPins> scans, double reach
     for (const auto& [off, k, c] : near) {
       if (!placed[k] && !taken[c]) {
         placed[k] = taken[c] = true;
-        add(clusters[c], tips[k]);
+        add(clusters[c], tips[k], scan.measured_as);
       }
     }
     for (std::size_t k = 0; k < tips.size(); ++k) {
       if (!placed[k]) {
         Cluster cluster;
         cluster.pin.placements = 0;
-        add(cluster, tips[k]);
+        add(cluster, tips[k], scan.measured_as);
         clusters.push_back(std::move(cluster));
       }
     }

@@ -210,7 +210,7 @@ PoseHints ScanModel::hints_for(const Scan& scan, const std::vector<int>& group_i
         hints.stage_sigma_rad = std::hypot(scan.nominal->sigma_rad, other.nominal->sigma_rad);
       }
     }
-    pins.push_back({other.pins, other.group_from_scanner});
+    pins.push_back({other.pins, other.group_from_scanner, measured_as(group_ids, id)});
   }
   const std::vector<PinMatch> matches = match_pins(scan.pins, merged_pins(pins), {});
   for (std::size_t k = 0; k < matches.size(); ++k) {

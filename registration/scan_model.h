@@ -175,6 +175,9 @@ class ScanModel {
   /// The scan of these that this one is a part of, where it is not to stand by itself: the operator's locks
   /// hold.
   [[nodiscard]] std::optional<int> whole_among(const std::vector<int>& ids, int id) const;
+  /// The scan of these whose samples these are: the whole that it is a part of, which is none of another, or
+  /// itself.
+  [[nodiscard]] int measured_as(const std::vector<int>& ids, int id) const;
   /// How many measurements these scans are.
   [[nodiscard]] std::size_t measurements(const std::vector<int>& ids) const;
   /// Those of these ids (ascending) whose samples tell something of this scan: not what has the same ones,

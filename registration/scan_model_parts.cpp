@@ -39,6 +39,14 @@ std::optional<int> ScanModel::whole_among(const std::vector<int>& ids, int id) c
   return std::nullopt;
 }
 
+int ScanModel::measured_as(const std::vector<int>& ids, int id) const {
+  // A whole has more samples than its part, so this ends.
+  for (std::optional<int> whole = whole_among(ids, id); whole; whole = whole_among(ids, id)) {
+    id = *whole;
+  }
+  return id;
+}
+
 std::size_t ScanModel::measurements(const std::vector<int>& ids) const {
   return ids.size() - static_cast<std::size_t>(std::ranges::count_if(
                           ids, [&](int id) { return whole_among(ids, id).has_value(); }));

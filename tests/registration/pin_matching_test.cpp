@@ -150,6 +150,29 @@ TEST(PinMerge, AveragesWhatIsOnePin) {
   EXPECT_TRUE(merged_pins({}).empty());
 }
 
+TEST(PinMerge, WhatAScanAndItsPartShowIsMeasuredOnce) {
+  const auto seen = [](int label, double x_mm) {
+    SeenPin out;
+    out.label = label;
+    out.position_mm = {x_mm, 0, 0};
+    out.covariance_mm2 = 0.04 * Eigen::Matrix3d::Identity();
+    return out;
+  };
+  const std::vector<SeenPin> merged = merged_pins(
+      std::vector<PlacedPins>{{{seen(-1, 0.2)}, {}, 7},  // whose pins were named in its part alone
+                              {{seen(1, 0.2), seen(3, 9.0)}, {}, 7},
+                              {{seen(1, 0.2)}, {}, 7},
+                              {{seen(2, 0.4)}, {}, 8},
+                              {{seen(2, 0.3)}, {}, 9}});
+  ASSERT_EQ(merged.size(), 2U);
+  EXPECT_EQ(merged[0].placements, 3);
+  EXPECT_NEAR(merged[0].position_mm.x(), 0.3, 1e-12);
+  EXPECT_NEAR(merged[0].covariance_mm2(0, 0), 0.04 / 3, 1e-12);
+  EXPECT_EQ(merged[0].label, 2) << "which two measurements say, and one does not";
+  EXPECT_EQ(merged[1].placements, 1);  // which the part alone was seen to show
+  EXPECT_EQ(merged[1].label, 3);
+}
+
 ScanPins scan_of(std::vector<SeenPin> tips, int id = 0) {
   return {id, std::move(tips), {0, 0, 0}, 20};
 }
