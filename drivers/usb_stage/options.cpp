@@ -15,7 +15,8 @@ constexpr std::array<plugin::SettingRow, 8> kRows{{
     {DUBSAR_TYPE_TEXT, "axes",
      "its axes in their order, those that turn with :deg, e.g. x,y:deg; default: x"},
     {DUBSAR_TYPE_TEXT, "limits",
-     "soft limits of each axis, e.g. 0..120,-90..90; default: the controller's own", "mm or deg"},
+     "soft limits of each axis, e.g. 0..120,-90..90; own or default: the controller's, tmcl has none",
+     "mm or deg"},
     {DUBSAR_TYPE_TEXT, "steps",
      "of tmcl: microsteps per mm, or per degree; one for all axes or one for each, e.g. 1600,88.9"},
     {DUBSAR_TYPE_TEXT, "speed_max", "of tmcl: the greatest speed; one for all axes or one for each",
@@ -60,15 +61,22 @@ bool take_axes(std::string_view text, std::vector<AxisWish>& axes) {
   return true;
 }
 
-bool take_limits(std::string_view text, std::vector<std::pair<double, double>>& limits) {
+using Limits = std::optional<std::pair<double, double>>;
+
+/// Nothing for an axis that has its controller's own.
+bool take_limits(std::string_view text, std::vector<Limits>& limits) {
   for (const std::string_view part : parts(text)) {
+    if (part == "own") {
+      limits.emplace_back();
+      continue;
+    }
     const std::size_t dots = part.find("..");
     const auto low = plugin::number(part.substr(0, dots));
     const auto high = dots == part.npos ? std::nullopt : plugin::number(part.substr(dots + 2));
     if (!low || !high || !(*low < *high)) {
       return false;
     }
-    limits.emplace_back(*low, *high);
+    limits.emplace_back(std::pair(*low, *high));
   }
   return true;
 }
@@ -113,7 +121,7 @@ std::span<const plugin::SettingRow> option_rows() {
 
 Result<StageOptions> parse_options(std::span<const dubsar_option> options) {
   StageOptions out;
-  std::vector<std::pair<double, double>> limits;
+  std::vector<Limits> limits;
   double module = 1;
   double output = 0;
   for (const dubsar_option& option : options) {

@@ -35,6 +35,11 @@ class Tmcl : public Firmware {
       return fail(ErrorKind::kUsage, "how far a step goes is not known", where_,
                   "give steps= (microsteps per mm or degree) and speed_max=, for each axis");
     }
+    // One that turns goes round; one that does not would go on beyond its end.
+    if (std::ranges::any_of(wishes_, [](const AxisWish& wish) { return !wish.rotary && !wish.limits; })) {
+      return fail(ErrorKind::kUsage, "how far its axes may go is not known", where_,
+                  "give limits= in mm for each axis that does not turn; own for one that does");
+    }
     const Result<std::int32_t> version = ask({Command::kVersion, 1, 0, 0});
     if (!version) {
       return std::unexpected(version.error());
@@ -50,7 +55,7 @@ class Tmcl : public Firmware {
       const double low = wish.limits ? wish.limits->first * unit : -farthest;
       const double high = wish.limits ? wish.limits->second * unit : farthest;
       // Its switch, or where it stands first, is at 0, within its limits or not.
-      axes_.push_back({wish.name, wish.rotary, options_.switches, !wish.limits && wish.rotary, low, high,
+      axes_.push_back({wish.name, wish.rotary, options_.switches, !wish.limits, low, high,
                        options_.speeds_max[k] * unit, 1 / steps_per_unit(k),
                        std::pair(std::min(low, 0.0), std::max(high, 0.0))});
     }

@@ -77,12 +77,16 @@ std::unique_ptr<Firmware> horus(Link& link) {
   return make_horus(link, {{.name = "x", .rotary = true, .limits = {}}}, "bench");
 }
 /// Two axes of 1000 steps per mm, no switches.
-std::unique_ptr<Firmware> tmcl(Link& link) {
+std::unique_ptr<Firmware> tmcl_of(Link& link, const std::vector<AxisWish>& axes) {
   TmclOptions options;
   options.steps = {1000, 1000};
   options.speeds_max = {50, 50};
   options.switches = false;
-  return make_tmcl(link, {AxisWish{}, AxisWish{}}, options, "bench");
+  return make_tmcl(link, axes, options, "bench");
+}
+std::unique_ptr<Firmware> tmcl(Link& link) {
+  const AxisWish wish{.name = "x", .rotary = false, .limits = {{-1000, 1000}}};
+  return tmcl_of(link, {wish, wish});
 }
 
 std::unique_ptr<Controller> open(Board& board, const Maker& firmware) {
@@ -157,6 +161,29 @@ TEST(StageFirmware, ARefusedHomingLeavesTheLaserOnAndSaysSo) {
     EXPECT_EQ(controller->home().error().kind, ErrorKind::kUsage) << name;
     EXPECT_EQ(board.laser(), 1) << name;
     EXPECT_EQ(controller->read()->power[0], 1) << name;
+  }
+}
+
+/// A Trinamic module knows no end of its own: a slide would run into its stop, a turntable goes round.
+TEST(StageFirmware, ATrinamicAxisThatDoesNotTurnNeedsLimits) {
+  const AxisWish table{.name = "y", .rotary = true, .limits = {}};
+  for (const bool limited : {false, true}) {
+    AxisWish slide{.name = "x", .rotary = false, .limits = {}};
+    if (limited) {
+      slide.limits = {-5, 5};
+    }
+    Board board("tmcl");
+    BoardLink link(board);
+    const std::unique_ptr<Firmware> firmware = tmcl_of(link, {slide, table});
+    const Status connected = firmware->connect();
+    ASSERT_EQ(connected.has_value(), limited);
+    if (!limited) {
+      EXPECT_EQ(connected.error().kind, ErrorKind::kUsage);
+      EXPECT_THAT(connected.error().line(), HasSubstr("give limits= in mm for each axis that does not turn"));
+      continue;
+    }
+    EXPECT_FALSE(firmware->axes()[0].endless);
+    EXPECT_TRUE(firmware->axes()[1].endless);
   }
 }
 

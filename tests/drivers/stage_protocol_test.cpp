@@ -116,6 +116,10 @@ TEST(StageOptions, AreChecked) {
   EXPECT_EQ(good->axes[1].limits->second, 90);
   EXPECT_EQ(good->tmcl.steps, (std::vector{51200, 88.9}));
   EXPECT_EQ(parse({{"axes", "x,y"}, {"steps", "51200"}})->tmcl.steps, (std::vector{51200.0, 51200.0}));
+  const auto own = parse({{"axes", "x,y:deg"}, {"limits", "0..120,own"}});
+  ASSERT_TRUE(own) << own.error().line();
+  EXPECT_EQ(own->axes[0].limits->second, 120);
+  EXPECT_FALSE(own->axes[1].limits);
   EXPECT_TRUE(good->tmcl.switches);
   EXPECT_FALSE(parse({{"switches", "no"}})->tmcl.switches);
   // One number is not both microsteps per mm and per degree.

@@ -113,6 +113,9 @@ constexpr EnginePhrase kControllers[] = {
     {"how far a step goes is not known", "es ist nicht bekannt, wie weit ein Schritt geht"},
     {"give steps= (microsteps per mm or degree) and speed_max=, for each axis",
      "steps= (Mikroschritte je mm oder Grad) und speed_max= angeben, für jede Achse"},
+    {"how far its axes may go is not known", "es ist nicht bekannt, wie weit ihre Achsen gehen dürfen"},
+    {"give limits= in mm for each axis that does not turn; own for one that does",
+     "limits= in mm für jede Achse angeben, die nicht dreht; own für eine, die dreht"},
     {"axes are x, y, z, a, b and c", "Achsen sind x, y, z, a, b und c"},
     {"no axis ", "diese Achse gibt es nicht: "},
     // its laser
