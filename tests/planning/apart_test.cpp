@@ -95,6 +95,14 @@ TEST(Apart, WhatHangsBesideAClosedTabletIsNotRed) {
     strays += is_stray(target) && target.sample_mm.y() > 9.2 ? 1 : 0;
   }
   EXPECT_GT(strays, 5);
+  // 4 x 16 samples: the 36 of the border, and those diagonally inside its corners.
+  const RedScan& of_strip = result->map.scans.back();
+  ASSERT_EQ(of_strip.id, static_cast<int>(session.grids.size()) - 1);
+  EXPECT_EQ(of_strip.samples, 64);
+  EXPECT_EQ(of_strip.potentially_sparse, 36);
+  EXPECT_EQ(of_strip.sparse, 0);
+  EXPECT_EQ(of_strip.cleared, 0);
+  EXPECT_EQ(of_strip.excused, 40);
 }
 
 TEST(Apart, NearAHoleItMayBeClay) {

@@ -174,6 +174,7 @@ TEST(RedMap, AnObjectSeenFromAllSidesIsConclusive) {
   ASSERT_TRUE(result);
   EXPECT_TRUE(result->map.conclusive);
   EXPECT_TRUE(result->map.next.empty());
+  ASSERT_EQ(result->map.scans.size(), session.grids.size());
   for (const RedScan& scan : result->map.scans) {
     EXPECT_EQ(scan.sparse, 0);
     EXPECT_GT(scan.cleared, 0);
