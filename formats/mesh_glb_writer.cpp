@@ -94,12 +94,23 @@ struct Parts {
   }
 };
 
+/// Clay is matt. A surface without a material is bare metal (3.9.6 and 5.22: metallicFactor 1), nearly black
+/// where a viewer has no surroundings to mirror in it. White, so that colours of vertices are seen as they
+/// are.
+OrderedJson clay() {
+  OrderedJson material;
+  material["name"] = "clay";
+  material["pbrMetallicRoughness"] = {{"metallicFactor", 0.0}, {"roughnessFactor", 1.0}};
+  return material;
+}
+
 /// Positions are millimetres; the node scales them to metres.
 std::string whole_glb(Parts parts) {
   OrderedJson primitive;
   primitive["attributes"] = std::move(parts.attributes);
   primitive["indices"] = parts.accessors.size() - 1;
   primitive["mode"] = kTriangles;
+  primitive["material"] = 0;
   const bool is_packed = !parts.extension.is_null();
   if (is_packed) {
     primitive["extensions"][kDracoExtension] = std::move(parts.extension);
@@ -116,6 +127,7 @@ std::string whole_glb(Parts parts) {
   root["nodes"].push_back({{"mesh", 0}, {"scale", OrderedJson::array({0.001, 0.001, 0.001})}});
   root["meshes"] = OrderedJson::array();
   root["meshes"].push_back({{"primitives", OrderedJson::array({std::move(primitive)})}});
+  root["materials"] = OrderedJson::array({clay()});
   for (const char* named : {"nodes", "meshes"}) {
     if (!parts.name.empty()) {
       root[named][0]["name"] = parts.name;

@@ -3,6 +3,7 @@
 #include <array>
 #include <cstring>
 #include <limits>
+#include <nlohmann/json.hpp>
 #include <string>
 
 #include "formats/glb_container.h"
@@ -49,6 +50,20 @@ TEST(MeshGlb, HasNoNormalThatIsNotOneLong) {
   }
   EXPECT_LT((normals[1] - right).norm(), 1e-6);
   EXPECT_EQ(normals[4], Eigen::Vector3f::UnitZ());
+}
+
+/// ISO/IEC 12113:2022, 3.9.6: what has no material is of the default one, which is metal.
+TEST(MeshGlb, IsOfClayAndNotOfMetal) {
+  for (const std::string& glb :
+       {encode_mesh_glb(tetrahedron(), "t").value(), encode_mesh_draco_glb(tetrahedron(), "t").value()}) {
+    const nlohmann::json json = nlohmann::json::parse(split_glb(glb, "t").value().json);
+    const nlohmann::json& primitive = json["meshes"][0]["primitives"][0];
+    ASSERT_TRUE(primitive.contains("material")) << primitive;
+    const nlohmann::json& looks =
+        json["materials"][primitive["material"].get<std::size_t>()]["pbrMetallicRoughness"];
+    EXPECT_EQ(looks["metallicFactor"], 0.0);
+    EXPECT_FALSE(looks.contains("baseColorFactor")) << "white: colours of vertices are multiplied by it";
+  }
 }
 
 }  // namespace
