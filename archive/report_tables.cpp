@@ -102,10 +102,11 @@ std::string scans_section(const ReportInput& input) {
         {std::to_string(scan.id), file_cell(input, scan.id, scan.file),
          std::string(to_string(scan.status)) + (scan.locked ? ", fixed by the operator" : "") +
              (first ? ", a copy of scan " + std::to_string(*first) : ""),
-         placed ? micrometres(scan.rms_mm) : dash, placed ? micrometres(scan.sigma_mm) : dash,
-         placed ? fixed(100.0 * scan.overlap, 0) : dash, counts ? std::to_string(counts->samples) : dash,
-         counts ? std::to_string(counts->sparse) : dash, counts ? std::to_string(counts->cleared) : dash,
-         counts ? std::to_string(counts->excused) : dash, html_escaped(remarks_on(scan, input.checklist))},
+         placed && was_compared(scan) ? micrometres(scan.rms_mm) : dash,
+         placed ? micrometres(scan.sigma_mm) : dash, placed ? fixed(100.0 * scan.overlap, 0) : dash,
+         counts ? std::to_string(counts->samples) : dash, counts ? std::to_string(counts->sparse) : dash,
+         counts ? std::to_string(counts->cleared) : dash, counts ? std::to_string(counts->excused) : dash,
+         html_escaped(remarks_on(scan, input.checklist))},
         scan.status == PoseStatus::kRegistered && scan.warning.empty() ? "" : "open");
   }
   return "<section>\n<h2>Scans</h2>\n" +
@@ -126,7 +127,7 @@ std::string accuracy_section(const ReportInput& input) {
   std::vector<double> rms_mm;
   double worst_sigma_mm = 0;
   for (const ScanPose& scan : input.scans) {
-    if (scan.status == PoseStatus::kRegistered && std::isfinite(scan.rms_mm) &&
+    if (scan.status == PoseStatus::kRegistered && std::isfinite(scan.rms_mm) && was_compared(scan) &&
         !copied_from(input.red_map.copies, scan.id)) {
       rms_mm.push_back(scan.rms_mm);
       worst_sigma_mm = std::max(worst_sigma_mm, scan.sigma_mm);

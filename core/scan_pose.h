@@ -35,6 +35,11 @@ struct ScanPose {
   std::vector<std::string> packed_as{};
 };
 
+/// Whether its rms_mm was measured: the 0 of a scan that lies on no other is none.
+[[nodiscard]] inline bool was_compared(const ScanPose& pose) {
+  return pose.overlap > 0 || pose.rms_mm > 0;
+}
+
 [[nodiscard]] constexpr const char* to_string(PoseStatus status) {
   switch (status) {
     case PoseStatus::kRegistered:

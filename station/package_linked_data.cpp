@@ -60,7 +60,9 @@ ProvenanceScan scan_of(const PackageContent& content, const StoredScan& scan) {
   out.values = {{"samples", static_cast<double>(scan.samples), ""},
                 {"lateral spacing", scan.spacing_mm, "mm"}};
   if (out.in_model) {
-    out.values.push_back({"RMS to the overlapping scans", pose->rms_mm, "mm"});
+    if (was_compared(*pose)) {
+      out.values.push_back({"RMS to the overlapping scans", pose->rms_mm, "mm"});
+    }
     out.values.push_back({"predicted error of its place", pose->sigma_mm, "mm"});
     out.values.push_back({"overlap with the other scans", pose->overlap, ""});
   }
@@ -107,10 +109,12 @@ void add_steps(const PackageContent& content, const std::vector<std::string>& pa
                               keeper_of(content)};
   double worst_rms_mm = 0;
   double worst_sigma_mm = 0;
+  bool any_compared = false;
   for (const ScanPose& pose : content.results().poses) {
     if (pose.status == PoseStatus::kRegistered) {
       worst_rms_mm = std::max(worst_rms_mm, pose.rms_mm);
       worst_sigma_mm = std::max(worst_sigma_mm, pose.sigma_mm);
+      any_compared = any_compared || was_compared(pose);
     }
   }
   for (const ProvenanceScan& scan : input.scans) {
@@ -119,8 +123,10 @@ void add_steps(const PackageContent& content, const std::vector<std::string>& pa
     }
   }
   registration.note = content.source.behind();
-  registration.results = {{"worst RMS between overlapping scans", worst_rms_mm, "mm"},
-                          {"worst predicted error of a place", worst_sigma_mm, "mm"}};
+  if (any_compared) {
+    registration.results = {{"worst RMS between overlapping scans", worst_rms_mm, "mm"},
+                            {"worst predicted error of a place", worst_sigma_mm, "mm"}};
+  }
   ProvenanceStep verdict{"verdict",
                          "What is sampled densely enough",
                          registration.from,

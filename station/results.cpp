@@ -12,13 +12,13 @@
 #include <utility>
 
 #include "acquisition/sign_off_log.h"
-#include "core/order_statistics.h"
 #include "formats/checklist_json.h"
 #include "formats/json_node.h"
 #include "formats/mesh_io.h"
 #include "formats/red_map_json.h"
 #include "formats/sha2.h"
 #include "planning/checklist.h"
+#include "station/accuracy_words.h"
 #include "station/kept_surface.h"
 #include "station/lost_scans.h"
 #include "station/range_camera_record.h"
@@ -35,54 +35,6 @@ namespace {
 
 constexpr const char* kRun = "run";
 constexpr const char* kModel = "model";
-
-/// How well the planner knew what a scan would clear; nothing where none was asked for.
-std::optional<std::string> prediction_sentence(const std::vector<ViewGain>& gains) {
-  std::vector<double> off;
-  for (const ViewGain& gain : gains) {
-    if (gain.predicted_mm2 && gain.actual_mm2 > 0) {
-      off.push_back(std::abs(*gain.predicted_mm2 - gain.actual_mm2) / gain.actual_mm2);
-    }
-  }
-  if (off.empty()) {
-    return std::nullopt;
-  }
-  return fmt::format(
-      "What each scan would clear was predicted to within {:.0f} % of what it did clear (median of {} "
-      "scans).",
-      100 * median_of(off), off.size());
-}
-
-/// Of the scans that count.
-std::vector<std::string> accuracy_sentences(const std::vector<ScanPose>& poses,
-                                            const std::vector<ViewGain>& gains) {
-  double worst_sigma_mm = 0;
-  double worst_rms_mm = 0;
-  for (const ScanPose& pose : poses) {
-    if (pose.status == PoseStatus::kRegistered) {
-      worst_sigma_mm = std::max(worst_sigma_mm, pose.sigma_mm);
-      worst_rms_mm = std::max(worst_rms_mm, pose.rms_mm);
-    }
-  }
-  std::vector<std::string> out{
-      fmt::format(
-          "Where scans overlap, their surfaces lie within {:.1f} µm RMS of each other in the worst scan.",
-          1000 * worst_rms_mm),
-      fmt::format(
-          "The predicted error of a scan's place is at most {:.1f} µm (one standard deviation), from the "
-          "overlaps alone; the calibration of the scanner comes on top.",
-          1000 * worst_sigma_mm)};
-  for (const ScanPose& pose : poses) {
-    if (pose.status == PoseStatus::kRegistered && !pose.warning.empty()) {
-      out.push_back(
-          fmt::format("Scan {} is in the model, and a warning stands of it: {}.", pose.id, pose.warning));
-    }
-  }
-  if (auto prediction = prediction_sentence(gains)) {
-    out.push_back(std::move(*prediction));
-  }
-  return out;
-}
 
 /// What is to be said of single scans of the session: which are lost, which have none of the places, and what
 /// devices remarked on those that stand.
@@ -195,7 +147,7 @@ ReportInput report_input(const Results& results, const PlanningStage& stage, con
           .tablet_from_model = stage.tablet_from_model(results.mesh),
           .wedges = facts.wedges,
           .wedge_profiles = facts.wedge_profiles,
-          .accuracy = accuracy_sentences(counting, facts.gains),
+          .accuracy = accuracy_sentences(counting, stage.placed(), facts.gains),
           .calibration = {},
           .not_measured = facts.wedges.empty() ? std::vector<std::string>{"Wedges: they were not looked for."}
                                                : std::vector<std::string>{},

@@ -313,6 +313,15 @@ TEST_F(Report, NumbersThatAreNoneAreDashes) {
   EXPECT_THAT(page, HasSubstr("<td>21.3</td>"));
 }
 
+TEST_F(Report, AScanThatWasHeldAgainstNoOtherHasNoResidual) {
+  scans_.resize(1);
+  EXPECT_THAT(html(), HasSubstr("the median residual between scans is 21.3 µm"));
+  scans_[0].rms_mm = 0;
+  const std::string page = html();
+  EXPECT_THAT(page, Not(HasSubstr("the median residual")));
+  EXPECT_THAT(page, HasSubstr("<td>registered</td><td>–</td>"));
+}
+
 TEST_F(Report, SameInputSameBytes) {
   EXPECT_EQ(html(), html());
 }
