@@ -47,6 +47,10 @@ Plan plan_of(const SixViews& views, FatcrossKind kind) {
   // wide enough, else below.
   const Ruler in_corner = cdli ? ruler_for(mm_per_px, right.width) : Ruler{};
   plan.ruler = in_corner.length_cm > 0 ? in_corner : ruler_for(mm_per_px, wide);
+  // Of a tablet that is narrower than a ruler of one centimetre: it reaches below the edges, too.
+  if (plan.ruler.length_cm == 0) {
+    plan.ruler = ruler_for(mm_per_px, left.width + wide + right.width + 2 * gap);
+  }
   const bool below = in_corner.length_cm == 0 && plan.ruler.length_cm > 0;
   const int air = below && gap == 0 ? plan.ruler.height_px / 2 : 0;
   plan.width = left.width + wide + right.width + 4 * gap;
@@ -66,7 +70,9 @@ Plan plan_of(const SixViews& views, FatcrossKind kind) {
     put(face, column_x + (wide - view.width) / 2, y + (row - view.height) / 2);
     y += row + gap;
   }
-  plan.ruler_corner = below ? Eigen::Vector2i(column_x + (wide - plan.ruler.width_px) / 2, y + air)
+  const int most_left = plan.width - gap - plan.ruler.width_px;
+  const int middle = column_x + (wide - plan.ruler.width_px) / 2;
+  plan.ruler_corner = below ? Eigen::Vector2i(std::clamp(middle, gap, std::max(gap, most_left)), y + air)
                             : Eigen::Vector2i(column_x + wide + gap,
                                               plan.height - plan.ruler.height_px - plan.ruler.height_px / 4);
   return plan;

@@ -66,6 +66,29 @@ TEST(Fatcross, OfEblHasGapsAndARulerBelow) {
   EXPECT_NEAR(last - first + 1, 50 / mm_per_px, 1);
 }
 
+/// A fragment of a centimetre: the ruler has no room in its column, and reaches below the edges.
+TEST(Fatcross, OfANarrowFragmentHasARulerToo) {
+  const double mm_per_px = 25.4 / 600;
+  const SixViews views = views_of(coloured_box(10, 24, 6), mm_per_px);
+  ASSERT_EQ(ruler_for(mm_per_px, views[Face::kObverse].width).length_cm, 0);
+  for (const FatcrossKind kind : {FatcrossKind::kCdli, FatcrossKind::kEbl}) {
+    const Image sheet = fatcross(views, kind, kBlackGround);
+    const auto corners = fatcross_corners(views, kind);
+    int below = 0;  // the first row below all views
+    for (const Face face : kSixViewOrder) {
+      below = std::max(below, corners[static_cast<std::size_t>(face)].y() + views[face].height);
+    }
+    int longest = 0;
+    for (int y = below; y < sheet.height; ++y) {
+      for (int x = 0, run = 0; x < sheet.width; ++x) {
+        run = sheet.rgb(x, y) == kBlackGround ? 0 : run + 1;
+        longest = std::max(longest, run);
+      }
+    }
+    EXPECT_NEAR(longest, 10 * (kind == FatcrossKind::kEbl ? 2 : 1) / mm_per_px, 1);
+  }
+}
+
 TEST(Fatcross, TellsWhereEachViewLies) {
   const SixViews views = views_of(coloured_box(30, 24, 12), 0.1);
   for (const FatcrossKind kind : {FatcrossKind::kCdli, FatcrossKind::kEbl}) {
