@@ -26,7 +26,9 @@ std::string cleaned(std::string_view text) {
   out.reserve(text.size());
   while (!text.empty()) {
     const CodePoint c = first_code_point(text);
-    if (c.bytes == 0 || is_unwelcome(c.value)) {
+    if (c.value == '\r') {  // a line ends as on Windows, or on an old Macintosh
+      out += text.starts_with("\r\n") ? "" : "\n";
+    } else if (c.bytes == 0 || is_unwelcome(c.value)) {
       out += kReplacementCharacter;
     } else {
       out += text.substr(0, c.bytes);

@@ -7,8 +7,9 @@
 
 namespace dubsar {
 
-/// Outside text with U+FFFD for control characters (but tabs and line feeds), for bytes that are not UTF-8,
-/// for what is no character, and for marks that turn the direction of writing.
+/// Outside text with U+FFFD for control characters (but tabs and the ends of lines, which are line feeds
+/// then), for bytes that are not UTF-8, for what is no character, and for marks that turn the direction of
+/// writing.
 [[nodiscard]] std::string cleaned(std::string_view text);
 
 /// cleaned(), and made safe for HTML, as content or inside a quoted attribute: the five special characters

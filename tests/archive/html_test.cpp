@@ -30,6 +30,10 @@ TEST(HtmlEscaped, ReplacesWhatIsNotUtf8) {
   EXPECT_EQ(html_escaped("\xF4\x90\x80\x80").find("\xF4"), std::string::npos);  // above U+10FFFF
 }
 
+TEST(HtmlEscaped, TakesLinesAsAnySystemEndsThem) {
+  EXPECT_EQ(html_escaped("joins K. 1\r\nchipped\rdusty\n"), "joins K. 1\nchipped\ndusty\n");
+}
+
 TEST(HtmlEscaped, ReplacesControlsAndMarksThatTurnTheDirectionOfWriting) {
   EXPECT_EQ(html_escaped(std::string("a\0b\x1B", 4)), "a" + kReplaced + "b" + kReplaced);
   EXPECT_EQ(html_escaped("scan\u202Eylp.exe"), "scan" + kReplaced + "ylp.exe");
