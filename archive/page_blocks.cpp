@@ -142,8 +142,10 @@ class Reader {
       }
     } else if (name == "p" || name == "footer") {
       block(tag, PageBlock::Kind::kParagraph);
-      soft_ = !tag.closes && (name == "footer" || !tag.attribute("class").empty());
-      if (!tag.closes && tag.attribute("class") == "line") {
+      const std::string_view look = tag.attribute("class");
+      bold_ = !tag.closes && look == "void";  // that a signature does not hold
+      soft_ = !tag.closes && !bold_ && (name == "footer" || !look.empty());
+      if (!tag.closes && look == "line") {
         blocks_.back().level = 1;
       }
     } else if (name == "ul" || name == "ol") {

@@ -54,6 +54,18 @@ TEST(PageBlocks, KeepEveryWordInItsOrder) {
   EXPECT_EQ(words(blocks[5].rows[1][1]), "");
 }
 
+/// On paper there is no red: that a signature is void must not be paler than the rest.
+TEST(PageBlocks, WhatIsVoidIsBoldAndWhatIsAsideIsSoft) {
+  const auto blocks = page_blocks(
+      "<p class=\"void\">It is void.</p><p>Plain.</p><p class=\"aside\">By the way.</p><footer>End</footer>");
+  ASSERT_EQ(blocks.size(), 4U);
+  EXPECT_TRUE(blocks[0].text[0].bold);
+  EXPECT_FALSE(blocks[0].text[0].soft);
+  EXPECT_FALSE(blocks[1].text[0].bold || blocks[1].text[0].soft);
+  EXPECT_TRUE(blocks[2].text[0].soft && blocks[3].text[0].soft);
+  EXPECT_FALSE(blocks[2].text[0].bold);
+}
+
 TEST(PageBlocks, TakePicturesOutOfThePage) {
   const std::string bytes = "not a picture, but bytes";
   const std::string uri =
