@@ -93,7 +93,8 @@ struct Placement {
   double tilt_rad = 0;
   /// Set when the tablet has to be turned by hand first: the rotation asked for, tablet_new_from_tablet_old
   /// in the stage frame, about the tablet's centre. The translation is where that centre then lies, seen from
-  /// the middle of the stage, along the support: zero unless the tablet is larger than the field.
+  /// the middle of the stage, along the support, and how far above the middle of the scanner's depth: zero
+  /// unless the tablet is larger than the field, or than the depth.
   std::optional<RigidTransform> hand_turn;
   /// stage_from_scanner as an arm is asked for it; turntable and tilt are 0 then.
   std::optional<RigidTransform> free_pose = std::nullopt;

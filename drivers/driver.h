@@ -177,8 +177,9 @@ typedef struct dubsar_placement {
   double turntable_rad;
   double tilt_rad;
   /* The turn that is asked for, tablet_new_from_tablet_old in the stage frame, about the tablet's centre. The
-   * translation is where the centre then lies, from the stage's origin along the support; 0, 0, 0 but for
-   * tablets that are larger than the field. */
+   * translation is where the centre then lies, from the stage's origin along the support, and along z how far
+   * above the middle of the scanner's depth (below it: less than 0); 0, 0, 0 but for tablets that are larger
+   * than the field or reach beyond the depth. */
   double hand_turn[16];
   /* Of a device with an arm, when nonzero: drive to stage_from_scanner; turntable and tilt are 0. Zero: the
    * arm stays. The stage stands still under an arm. */

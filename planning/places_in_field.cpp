@@ -94,4 +94,27 @@ std::vector<PlaceInField> places_in_field(const Rig& rig, const Eigen::Matrix3d&
   return out;
 }
 
+std::vector<HeightInField> heights_in_field(const Rig& rig, const Eigen::Matrix3d& stage_from_model,
+                                            const ModelSurface& surface) {
+  const Eigen::Vector3d up = stage_from_model.row(2).transpose();
+  double top_mm = 0;
+  for (const Eigen::Vector3d& corner : surface.corners_mm) {
+    top_mm = std::max(top_mm, up.dot(corner - surface.center_mm));
+  }
+  std::vector<HeightInField> out;
+  if (top_mm <= 0.5 * kFills * rig.depth_range_mm) {
+    return out;
+  }
+  const double counted_mm = kCountedOn * rig.depth_range_mm;
+  const double highest_mm = top_mm - 0.5 * counted_mm;
+  const int count = std::clamp(static_cast<int>(std::ceil(highest_mm / counted_mm)), 1, kMostAlong);
+  out.push_back({0, "bring its middle to the working distance"});
+  for (int k = 1; k <= count; ++k) {
+    const double above_mm = highest_mm * k / count;
+    out.push_back({above_mm, "bring the place " + std::to_string(std::lround(above_mm)) +
+                                 " mm above its middle to the working distance"});
+  }
+  return out;
+}
+
 }  // namespace dubsar

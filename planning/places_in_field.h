@@ -26,4 +26,18 @@ struct PlaceInField {
                                                         const Eigen::Matrix3d& stage_from_model,
                                                         const ModelSurface& surface);
 
+/// How far above the tablet's middle the middle of the scanner's depth has to lie.
+struct HeightInField {
+  double above_mm = 0;  ///< along the stage's vertical
+  std::string say;      ///< "bring the place 22 mm above its middle to the working distance"
+};
+
+/// Where the tablet, lying so, reaches farther up and down than the scanner sees in depth: its middle first,
+/// then the heights that have to come to the working distance one after the other for all above it to be
+/// sampled. What is below is above when it is turned over. Else nothing: with its middle there all of it is
+/// in depth. stage_from_model: the rotation.
+[[nodiscard]] std::vector<HeightInField> heights_in_field(const Rig& rig,
+                                                          const Eigen::Matrix3d& stage_from_model,
+                                                          const ModelSurface& surface);
+
 }  // namespace dubsar

@@ -28,6 +28,8 @@ std::string degrees(double rad) {
 
 /// A place of the tablet that lies so near to the middle of the field, as a hand lays it, lies there.
 constexpr double kLiesThereMm = 10;
+/// Likewise a height, as a part of the scanner's depth.
+constexpr double kSameHeightOfDepth = 0.1;
 
 /// The least rotation that takes one unit vector to another; half turns go about `spare`.
 Eigen::Matrix3d least_turn(const Eigen::Vector3d& from, const Eigen::Vector3d& to,
@@ -51,21 +53,38 @@ struct Rest {
   bool off_middle = false;  ///< another place than the tablet's middle is looked at
 };
 
+/// Rests by hand as they are, or where the tablet reaches beyond the scanner's depth with one height of it
+/// after the other in depth.
+std::vector<Rest> at_heights(const Rig& rig, std::vector<Rest> rests, const ModelSurface& surface) {
+  std::vector<Rest> out;
+  for (const Rest& rest : rests) {
+    for (const HeightInField& height : heights_in_field(rig, rest.stage_from_model, surface)) {
+      Rest& there = out.emplace_back(rest);
+      there.focus_mm += height.above_mm * rest.stage_from_model.row(2).transpose();
+      there.turn->translation_mm.z() = -height.above_mm;
+      there.say += (there.say.empty() ? "" : "; ") + height.say;
+      there.off_middle = rest.off_middle || height.above_mm > 0;
+    }
+  }
+  return out.empty() ? std::move(rests) : out;
+}
+
 /// A rest by hand as it is, or where the tablet is larger than the field with one place of it after the other
 /// in the field, its middle first.
 std::vector<Rest> laid(const Rig& rig, const Rest& rest, const ModelSurface& surface) {
-  std::vector<Rest> out;
-  if (!rig.robot) {  // an arm looks where it is told to
-    for (const PlaceInField& place : places_in_field(rig, rest.stage_from_model, surface)) {
-      Rest& there = out.emplace_back(rest);
-      there.focus_mm = surface.center_mm + place.offset_mm;
-      there.turn->translation_mm = -(rest.stage_from_model * place.offset_mm);
-      there.turn->translation_mm.z() = 0;
-      there.say += (there.say.empty() ? "" : "; ") + place.say;
-      there.off_middle = !place.offset_mm.isZero();
-    }
+  if (rig.robot) {  // an arm looks where it is told to
+    return {rest};
   }
-  return out.empty() ? std::vector<Rest>{rest} : out;
+  std::vector<Rest> out;
+  for (const PlaceInField& place : places_in_field(rig, rest.stage_from_model, surface)) {
+    Rest& there = out.emplace_back(rest);
+    there.focus_mm = surface.center_mm + place.offset_mm;
+    there.turn->translation_mm = -(rest.stage_from_model * place.offset_mm);
+    there.turn->translation_mm.z() = 0;
+    there.say += (there.say.empty() ? "" : "; ") + place.say;
+    there.off_middle = !place.offset_mm.isZero();
+  }
+  return at_heights(rig, out.empty() ? std::vector<Rest>{rest} : std::move(out), surface);
 }
 
 /// Corners and samples of the model that are lowest decide where the support is.
@@ -95,9 +114,12 @@ std::vector<Rest> rests(const Rig& rig, const Eigen::Matrix3d& stage_from_model,
   const Eigen::Vector3d up = Eigen::Vector3d::UnitZ();
   const std::vector<Rest> pushed =
       laid(rig, {nominal_stage_from_model, surface.center_mm, RigidTransform{}, {}}, surface);
+  const bool by_height = !heights_in_field(rig, nominal_stage_from_model, surface).empty();
   for (const Rest& rest : pushed) {
     const Eigen::Vector3d way_mm = nominal_stage_from_model * (rest.focus_mm - focus_mm);
-    if (pushed.size() > 1 && way_mm.head<2>().norm() > kLiesThereMm) {
+    const bool elsewhere = way_mm.head<2>().norm() > kLiesThereMm ||
+                           (by_height && std::abs(way_mm.z()) > kSameHeightOfDepth * rig.depth_range_mm);
+    if (pushed.size() > 1 && elsewhere) {
       out.push_back(rest);
     }
   }
@@ -138,6 +160,28 @@ std::string say_drive(const Rig& rig, const Placement& placement, const Eigen::M
   return drive;
 }
 
+/// What an arm has to look at beside the tablet's middle, from there, stage frame.
+std::vector<Eigen::Vector3d> offsets_of_arm(const Rig& rig, const Rest& rest, const ModelSurface& surface) {
+  std::vector<PlaceInField> places = places_in_field(rig, rest.stage_from_model, surface);
+  if (places.empty()) {
+    places.emplace_back();
+  }
+  std::vector<HeightInField> heights = heights_in_field(rig, rest.stage_from_model, surface);
+  if (heights.empty()) {
+    heights.emplace_back();
+  }
+  std::vector<Eigen::Vector3d> out;
+  for (const PlaceInField& place : places) {
+    for (const HeightInField& height : heights) {
+      if (!place.offset_mm.isZero() || height.above_mm > 0) {
+        out.emplace_back(rest.stage_from_model * place.offset_mm +
+                         height.above_mm * Eigen::Vector3d::UnitZ());
+      }
+    }
+  }
+  return out;
+}
+
 /// What the motors can do for one rest. Places off the middle are many: fewer views of each are enough.
 std::vector<Placement> placements_of(const Rig& rig, const Placement& now, const Eigen::Vector3d& focus_mm,
                                      const Rest& rest, const ModelSurface& surface,
@@ -147,11 +191,8 @@ std::vector<Placement> placements_of(const Rig& rig, const Placement& now, const
   fewer.arm_rolls = (fewer.arm_rolls + 1) / 2;
   std::vector<Placement> out = motor_placements(rig, now, focus_mm, rest.off_middle ? fewer : options.motors);
   if (rig.robot) {
-    for (const PlaceInField& place : places_in_field(rig, rest.stage_from_model, surface)) {
-      if (!place.offset_mm.isZero()) {
-        const Eigen::Vector3d there_mm = focus_mm + rest.stage_from_model * place.offset_mm;
-        std::ranges::move(motor_placements(rig, now, there_mm, fewer), std::back_inserter(out));
-      }
+    for (const Eigen::Vector3d& offset_mm : offsets_of_arm(rig, rest, surface)) {
+      std::ranges::move(motor_placements(rig, now, focus_mm + offset_mm, fewer), std::back_inserter(out));
     }
   }
   return out;

@@ -40,7 +40,8 @@ struct CandidateOptions {
 /// allows hand turns), times what its motors can do within their limits (motor_placements()), without those
 /// where the head would come into the keep-out volume around the model or touch the support. Where the tablet
 /// is larger than the field (places_in_field()), on each side with one part of it after the other in the
-/// field: pushed there by hand, or looked at there by an arm. `last` is the scan that `state` speaks of: it
+/// field: pushed there by hand, or looked at there by an arm; likewise where it reaches beyond the scanner's
+/// depth (heights_in_field()): raised and lowered by hand. `last` is the scan that `state` speaks of: it
 /// tells how the tablet really lies. The hand turn that is asked for goes from how the tablet lies by the
 /// nominal pose, when the scan has one, so that errors of many turns do not add up.
 [[nodiscard]] std::vector<ViewCandidate> rig_candidates(const Rig& rig, const StageState& state,

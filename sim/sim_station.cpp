@@ -141,10 +141,16 @@ RigidTransform SimStation::by_hand(const RigidTransform& asked, const RigidTrans
   return pose;
 }
 
+double SimStation::focus_height_mm(const RigidTransform& stage_from_tablet,
+                                   const Placement& placement) const {
+  return stage_from_tablet.translation_mm.z() +
+         (placement.hand_turn ? -placement.hand_turn->translation_mm.z() : focus_above_middle_mm_);
+}
+
 void SimStation::drive_to(const Placement& placement) {
   nominal_drive_ = {placement.turntable_rad,
                     placement.tilt_rad,
-                    {0, 0, nominal_stage_from_tablet_.translation_mm.z()},
+                    {0, 0, focus_height_mm(nominal_stage_from_tablet_, placement)},
                     placement.free_pose};
   Random random(seed_for(seed_for(options_.seed, 52), static_cast<std::uint64_t>(moves_++)));
   const double sigma = rad_from_deg(options_.motor_sigma_deg);
@@ -171,9 +177,10 @@ Placement SimStation::present() const {
   return out;
 }
 
-StageScene SimStation::nominal_scene(const RigidTransform& stage_from_tablet) const {
+StageScene SimStation::nominal_scene(const RigidTransform& stage_from_tablet,
+                                     const Placement& placement) const {
   StageScene scene;
-  scene.focus_mm = {0, 0, stage_from_tablet.translation_mm.z()};
+  scene.focus_mm = {0, 0, focus_height_mm(stage_from_tablet, placement)};
   Eigen::Vector3d reach = stage_from_tablet.rotation.cwiseAbs() * half_size_mm_;
   reach.array() += pins_ ? kPinRoomMm : 0.0;
   scene.tablet_mm.extend(stage_from_tablet.translation_mm - reach);
@@ -207,7 +214,7 @@ Status SimStation::check(const Placement& placement) const {
   if (options_.robot && !goal.free_pose) {
     goal.free_pose = nominal_drive_.arm;
   }
-  return check_way(mine, nominal_scene(lies), present(), goal, "sim");
+  return check_way(mine, nominal_scene(lies, placement), present(), goal, "sim");
 }
 
 Status SimStation::move(const Placement& placement, double share) {
@@ -230,6 +237,7 @@ Status SimStation::move(const Placement& placement, double share) {
     after_turn.rotation *= true_stage_from_tablet_.rotation;
     after_turn.translation_mm += off_mm;
     true_stage_from_tablet_ = by_hand(nominal_stage_from_tablet_, after_turn);
+    focus_above_middle_mm_ = -placement.hand_turn->translation_mm.z();
   }
   drive_to(share < 1.0 ? on_the_way(from, goal, share) : goal);
   set_scene();
@@ -248,7 +256,7 @@ RigidTransform SimStation::nominal_after(const Placement& placement) const {
                                   ? asked_pose(nominal_stage_from_tablet_, *placement.hand_turn)
                                   : nominal_stage_from_tablet_;
   return lies.inverse() *
-         dubsar::stage_from_scanner(placement, Eigen::Vector3d(0, 0, lies.translation_mm.z()));
+         dubsar::stage_from_scanner(placement, Eigen::Vector3d(0, 0, focus_height_mm(lies, placement)));
 }
 
 RigidTransform SimStation::true_tablet_from_scanner() const {

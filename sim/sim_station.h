@@ -93,10 +93,15 @@ class SimStation {
   /// where a perfect turn of what lay there would have taken it.
   [[nodiscard]] RigidTransform by_hand(const RigidTransform& asked, const RigidTransform& after_turn) const;
   void drive_to(const Placement& placement);
+  /// Height of what the scanner looks at, stage frame, with a tablet that lies so: its middle, unless it was
+  /// asked to be raised or lowered.
+  [[nodiscard]] double focus_height_mm(const RigidTransform& stage_from_tablet,
+                                       const Placement& placement) const;
   /// The placement that the motors believe to be at.
   [[nodiscard]] Placement present() const;
   /// The tablet, and the pins around it, as it was asked to lie.
-  [[nodiscard]] StageScene nominal_scene(const RigidTransform& stage_from_tablet) const;
+  [[nodiscard]] StageScene nominal_scene(const RigidTransform& stage_from_tablet,
+                                         const Placement& placement) const;
   void set_scene();
 
   SimStationOptions options_;
@@ -109,6 +114,7 @@ class SimStation {
   Eigen::Vector3d half_size_mm_{0, 0, 0};
   RigidTransform nominal_stage_from_tablet_;
   RigidTransform true_stage_from_tablet_;
+  double focus_above_middle_mm_ = 0;  ///< as the last hand turn asked
   Drive nominal_drive_;
   Drive true_drive_;
   Scene scene_;

@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
+#include <array>
 #include <set>
 
 #include "core/units.h"
@@ -117,7 +118,8 @@ TEST(PlacesInField, TheyAreNamedByTheEdgesThatTheyLieTowards) {
 TEST(PlacesInField, WhoeverLaysItAsAskedHasThePlaceUnderTheScanner) {
   const ModelSurface surface = block({100, 80, 30});
   const MiddleScan scan(surface.center_mm + Eigen::Vector3d(25.5, 15.5, 0));  // it lies on a corner
-  const Rig rig = rig_of_field(70);
+  Rig rig = rig_of_field(70);
+  rig.depth_range_mm = 120;  // on whatever side it lies
   std::set<std::string> pushed;
   int turned = 0;
   for (const ViewCandidate& candidate : rig_candidates(rig, {}, scan.placed, surface)) {
@@ -147,6 +149,60 @@ TEST(PlacesInField, WhoeverLaysItAsAskedHasThePlaceUnderTheScanner) {
               "top edge under the scanner")
         << "it lies there";
   }
+}
+
+TEST(PlacesInField, WhatIsInDepthIsNotRaised) {
+  EXPECT_TRUE(heights_in_field(rig_of_field(70), Eigen::Matrix3d::Identity(), block({150, 100, 60})).empty());
+}
+
+TEST(PlacesInField, AllOfATallerTabletComesIntoDepth) {
+  const ModelSurface surface = block({50, 40, 20});
+  Rig rig = rig_of_field(70);
+  rig.depth_range_mm = 20;
+  // On its left edge.
+  const Eigen::Matrix3d upright = Eigen::AngleAxisd(kPi / 2, Eigen::Vector3d::UnitY()).toRotationMatrix();
+  const auto heights = heights_in_field(rig, upright, surface);
+  ASSERT_EQ(heights.size(), 3U);
+  EXPECT_EQ(heights.front().above_mm, 0);
+  EXPECT_EQ(heights.front().say, "bring its middle to the working distance");
+  EXPECT_EQ(heights.back().say, "bring the place 18 mm above its middle to the working distance");
+  for (double z = 0; z <= 25; z += 1) {
+    EXPECT_TRUE(std::ranges::any_of(heights, [&](const HeightInField& height) {
+      return std::abs(height.above_mm - z) <= 0.4 * rig.depth_range_mm;
+    })) << z;
+  }
+}
+
+TEST(PlacesInField, WhoeverRaisesItAsAskedHasThePlaceInDepth) {
+  const ModelSurface surface = block({50, 40, 20});
+  const MiddleScan scan(surface.center_mm);
+  Rig rig = rig_of_field(70);
+  rig.depth_range_mm = 20;
+  rig.has_turntable = false;
+  rig.tilt_max_rad = 0;
+  int raised = 0;
+  std::array<bool, 6> end_in_depth{};
+  for (const ViewCandidate& candidate : rig_candidates(rig, {}, scan.placed, surface)) {
+    const Eigen::Vector3d up = candidate.model_from_scanner.rotation.col(2);
+    for (std::size_t k = 0; k < end_in_depth.size(); ++k) {
+      const Eigen::Vector3d out =
+          (k % 2 == 0 ? 1.0 : -1.0) * Eigen::Vector3d::Unit(static_cast<Eigen::Index>(k / 2));
+      const double half_mm = (Eigen::Vector3d(25, 20, 10).cwiseProduct(out)).norm();
+      const Eigen::Vector3d end = surface.center_mm + half_mm * out;
+      const double z = up.dot(end - candidate.model_from_scanner.translation_mm);
+      end_in_depth[k] = end_in_depth[k] || (up.dot(out) > 0.99 && std::abs(z) < 0.5 * rig.depth_range_mm);
+    }
+    if (!candidate.by_hand) {
+      continue;
+    }
+    const RigidTransform& turn = *candidate.placement->hand_turn;
+    EXPECT_LE(turn.translation_mm.z(), 0);
+    raised += turn.translation_mm.z() < 0 ? 1 : 0;
+    const TabletOnStage lies = TabletOnStage::of({}, scan.placed).turned(turn, surface.center_mm);
+    EXPECT_LT((lies.focus_mm - candidate.model_from_scanner.translation_mm).norm(), 1e-9) << candidate.say;
+  }
+  EXPECT_GT(raised, 0);
+  EXPECT_THAT(end_in_depth, testing::Each(true)) << "of each side, laid upwards";
 }
 
 TEST(PlacesInField, AnArmLooksThereWithoutAHand) {

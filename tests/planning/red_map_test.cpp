@@ -231,6 +231,27 @@ TEST(RedMap, ARigWithoutHandTurnsCannotReachTheUnderside) {
   EXPECT_GT(unreachable, 150.0);
 }
 
+TEST(RedMap, WhatAHandMayBringIntoDepthIsNotOutOfReach) {
+  Session session;
+  session.scan(turned(0, 0));
+  session.scan(turned(180, 0));
+  // No motors, and the pebble on its edge is 18 to 24 mm high.
+  Rig rig = turntable_rig();
+  rig.has_turntable = false;
+  rig.tilt_max_rad = 0;
+  rig.depth_range_mm = 12;
+  JobContext job;
+  const auto result = make_red_map(session.map.scans(), nullptr, &rig, {}, job);
+  ASSERT_TRUE(result);
+  EXPECT_FALSE(result->map.conclusive);
+  for (const RedRegion& region : result->map.regions) {
+    EXPECT_NE(region.excuse, Excuse::kUnreachable) << region.area_mm2 << " mm2: " << region.reason;
+  }
+  EXPECT_TRUE(std::ranges::any_of(result->map.next, [](const NextView& view) {
+    return view.say.find("above its middle to the working distance") != std::string::npos;
+  }));
+}
+
 TEST(RedMap, WhatLiesOutsideTheFieldOfAllScansWasNotLookedAt) {
   Session session;
   session.half_field_mm = 4;  // of a pebble of 24 x 18 mm: its middle alone
