@@ -61,7 +61,7 @@ struct Rig {
   bool has_turntable = false;  ///< full turn about stage z, by motor
   double tilt_min_rad = 0;     ///< tilt of the scanner's axis from the vertical, by motor
   double tilt_max_rad = 0;
-  bool hand_turns = true;        ///< the operator can lay the tablet on another side
+  bool hand_turns = true;        ///< the operator can lay the tablet on another side, or prop it
   double support_height_mm = 0;  ///< nothing below this stage height can be seen
   std::string calibration;       ///< what it was calibrated with; empty when unknown
   std::optional<double> calibration_age_days;

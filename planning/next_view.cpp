@@ -227,7 +227,8 @@ Result<NextViews> next_views(std::span<const ViewCandidate> candidates, const Sc
   }
 
   const auto worth = [&](std::size_t c) {
-    return gain[c] / (candidates[c].by_hand ? 1.0 + options.hand_turn_cost : 1.0);
+    return gain[c] / (1.0 + (candidates[c].by_hand ? options.hand_turn_cost : 0.0) +
+                      (candidates[c].leans ? options.lean_cost : 0.0));
   };
   std::vector<std::size_t> order(candidates.size());
   std::iota(order.begin(), order.end(), std::size_t{0});

@@ -20,6 +20,7 @@ struct NextViewOptions {
   double enough_chance = 0.05;
   double least_overlap = 0.3;    ///< with what has been seen, to register
   double hand_turn_cost = 0.25;  ///< of lifting the tablet, in scans
+  double lean_cost = 1.0;        ///< of propping it as well
   double least_gain_mm2 = 1e-4;  ///< a view that clears less is not proposed
   std::size_t ranked = 5;        ///< views returned
 };

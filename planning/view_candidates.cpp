@@ -31,6 +31,11 @@ constexpr double kLiesThereMm = 10;
 /// Likewise a height, as a part of the scanner's depth.
 constexpr double kSameHeightOfDepth = 0.1;
 
+/// A scanner that tilts this far sees into what it does not see from straight above a side.
+constexpr double kTiltsEnoughRad = 30 * kPi / 180;
+/// Directions nearer to that of a side are as good as it.
+constexpr double kOnASideCosine = 0.966;
+
 /// The least rotation that takes one unit vector to another; half turns go about `spare`.
 Eigen::Matrix3d least_turn(const Eigen::Vector3d& from, const Eigen::Vector3d& to,
                            const Eigen::Vector3d& spare) {
@@ -51,6 +56,7 @@ struct Rest {
   std::optional<RigidTransform> turn;  ///< as the operator is asked for it, none for the present rest
   std::string say;
   bool off_middle = false;  ///< another place than the tablet's middle is looked at
+  bool leans = false;       ///< propped, on none of its sides
 };
 
 /// Rests by hand as they are, or where the tablet reaches beyond the scanner's depth with one height of it
@@ -103,6 +109,35 @@ HiddenHalf support_under(const Eigen::Matrix3d& stage_from_model, const ModelSur
   return hidden;
 }
 
+/// Rests on none of its sides, where motors do not look aslant: steep walls are seen from there alone.
+void add_leaning(const Rig& rig, const Eigen::Matrix3d& nominal_stage_from_model, const ModelSurface& surface,
+                 const CandidateOptions& options, std::vector<Rest>& out) {
+  if (rig.robot || rig.tilt_max_rad >= kTiltsEnoughRad) {
+    return;
+  }
+  const Eigen::Vector3d up = Eigen::Vector3d::UnitZ();
+  const Eigen::Vector3d spare = nominal_stage_from_model * surface.faces.normal(Face::kTop);
+  const int yaws = rig.has_turntable ? 1 : options.lean_yaw_steps;
+  for (const Eigen::Vector3d& of_faces :
+       sphere_directions(static_cast<std::size_t>(std::max(options.lean_directions, 1)))) {
+    if (of_faces.cwiseAbs().maxCoeff() > kOnASideCosine) {
+      continue;
+    }
+    const Eigen::Vector3d then_up = nominal_stage_from_model * surface.faces.model_from_faces * of_faces;
+    const Eigen::Matrix3d tip = least_turn(then_up, up, spare);
+    for (int yaw = 0; yaw < yaws; ++yaw) {
+      Rest rest;
+      const Eigen::Matrix3d turn = Eigen::AngleAxisd(2 * kPi * yaw / yaws, up).toRotationMatrix() * tip;
+      rest.stage_from_model = turn * nominal_stage_from_model;
+      rest.focus_mm = surface.center_mm;
+      rest.turn = RigidTransform{turn, Eigen::Vector3d::Zero()};
+      rest.say = say_turn(turn, nominal_stage_from_model, up, surface.faces) + ", propped up";
+      rest.leans = true;
+      std::ranges::move(laid(rig, rest, surface), std::back_inserter(out));
+    }
+  }
+}
+
 std::vector<Rest> rests(const Rig& rig, const Eigen::Matrix3d& stage_from_model,
                         const Eigen::Matrix3d& nominal_stage_from_model, const Eigen::Vector3d& focus_mm,
                         const ModelSurface& surface, const CandidateOptions& options) {
@@ -142,6 +177,7 @@ std::vector<Rest> rests(const Rig& rig, const Eigen::Matrix3d& stage_from_model,
       std::ranges::move(laid(rig, rest, surface), std::back_inserter(out));
     }
   }
+  add_leaning(rig, nominal_stage_from_model, surface, options, out);
   return out;
 }
 
@@ -236,6 +272,7 @@ std::vector<ViewCandidate> rig_candidates(const Rig& rig, const StageState& stat
       }
       candidate.hidden = hidden;
       candidate.by_hand = rest.turn.has_value();
+      candidate.leans = rest.leans;
       candidate.say = rest.say;
       if (const std::string drive = say_drive(rig, placement, rest.stage_from_model, surface.faces);
           !drive.empty()) {

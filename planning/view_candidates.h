@@ -27,6 +27,7 @@ struct ViewCandidate {
   std::optional<Placement> placement;  ///< none without a rig
   std::optional<HiddenHalf> hidden;    ///< what the support covers
   bool by_hand = false;                ///< the tablet has to be lifted
+  bool leans = false;                  ///< by hand: it has to be propped, on none of its sides
   std::string say;
 };
 
@@ -34,6 +35,8 @@ struct CandidateOptions {
   MotorSteps motors;
   int yaw_steps = 6;          ///< hand-made turns about the vertical, of a rig with no turntable
   int free_directions = 160;  ///< with no rig: directions all around
+  int lean_directions = 80;   ///< of a rig that hardly tilts: all around, those of the sides among them
+  int lean_yaw_steps = 3;     ///< as yaw_steps, for each of these
 };
 
 /// All poses that the rig allows: the tablet as it lies and on each of its other five sides (where the rig
@@ -41,8 +44,9 @@ struct CandidateOptions {
 /// where the head would come into the keep-out volume around the model or touch the support. Where the tablet
 /// is larger than the field (places_in_field()), on each side with one part of it after the other in the
 /// field: pushed there by hand, or looked at there by an arm; likewise where it reaches beyond the scanner's
-/// depth (heights_in_field()): raised and lowered by hand. `last` is the scan that `state` speaks of: it
-/// tells how the tablet really lies. The hand turn that is asked for goes from how the tablet lies by the
+/// depth (heights_in_field()): raised and lowered by hand. Of a rig whose scanner hardly tilts the tablet is
+/// propped by hand, too, so that it leans (ViewCandidate::leans). `last` is the scan that `state` speaks of:
+/// it tells how the tablet really lies. The hand turn that is asked for goes from how the tablet lies by the
 /// nominal pose, when the scan has one, so that errors of many turns do not add up.
 [[nodiscard]] std::vector<ViewCandidate> rig_candidates(const Rig& rig, const StageState& state,
                                                         const PlacedScan& last, const ModelSurface& surface,

@@ -38,6 +38,7 @@ constexpr EnginePhrase kTurns[] = {
     {"the corner between the right edge and the bottom edge",
      "die Ecke zwischen rechtem Rand und unterem Rand"},
     {", and turn it where it lies, ", ", und drehen, wo sie liegt, "},
+    {", propped up", ", abgestützt"},
     {"lay its middle under the scanner", "ihre Mitte unter den Scanner legen"},
     {"lay the place ", "die Stelle "},
     {" mm from its middle towards the obverse", " mm von der Mitte zur Vorderseite hin"},
