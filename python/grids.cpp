@@ -49,8 +49,8 @@ void take_out_masked(const MaskedInput<T>& array, const char* name, RangeGrid& g
   }
 }
 
-/// What the samples have beside their places: a sample that stands cannot be without it.
-std::vector<float> more_of(const Floats& array, const RangeGrid& grid, const char* name) {
+/// What the samples have beside their places, a share of one each: a sample that stands cannot be without it.
+std::vector<float> shares_of(const Floats& array, const RangeGrid& grid, const char* name) {
   std::vector<float> values = floats_of(array, grid, name);
   if (const std::optional<Input<bool>> mask = array.mask(name)) {
     for (std::size_t i = 0; i < values.size(); ++i) {
@@ -61,6 +61,14 @@ std::vector<float> more_of(const Floats& array, const RangeGrid& grid, const cha
                "fill it, or give valid= without these samples"});
       }
       values[i] = mask->data()[i] ? 0 : values[i];
+    }
+  }
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    if (grid.valid[i] != 0 && !(values[i] >= 0 && values[i] <= 1)) {
+      raise({ErrorKind::kUsage,
+             std::string(name) + " is not between 0 and 1",
+             {},
+             "give shares: of bytes, divided by 255; 0 for what is not known"});
     }
   }
   return values;
@@ -104,10 +112,10 @@ GridPointer make_grid(const Floats& x, const Floats& y, const Floats& z,
     }
   }
   if (intensity) {
-    grid->intensity = more_of(*intensity, *grid, "intensity");
+    grid->intensity = shares_of(*intensity, *grid, "intensity");
   }
   if (confidence) {
-    grid->confidence = more_of(*confidence, *grid, "confidence");
+    grid->confidence = shares_of(*confidence, *grid, "confidence");
   }
   grid->spacing_mm = spacing_mm > 0 ? spacing_mm : estimate_spacing_mm(*grid);
   grid->source = bytes_of(source);

@@ -147,6 +147,15 @@ class Grids(unittest.TestCase):
             with self.assertRaisesRegex(dubsar.UsageError, f"^{name} is masked where the grid has a sample"):
                 dubsar.Grid(x, y, x, **{name: bright})
 
+    def test_intensity_and_confidence_are_shares(self):
+        y, x = np.mgrid[0:4, 0:5] * 0.1
+        z = np.where(x > 0.35, np.nan, 0.0)
+        for name in ("intensity", "confidence"):
+            self.assertEqual(getattr(dubsar.Grid(x, y, z, **{name: z + 1}), name)[0, 0], 1)
+            for wrong in (np.full((4, 5), 200, np.uint8), x + 85, x - 0.1, np.where(x > 0.15, np.nan, 0.5)):
+                with self.assertRaisesRegex(dubsar.UsageError, f"^{name} is not between 0 and 1"):
+                    dubsar.Grid(x, y, z, **{name: wrong})
+
     def test_numbers_of_a_map_are_refused_before_they_are_rounded(self):
         y, x = np.mgrid[0:20, 0:30] * 0.1
         self.assertEqual(len(dubsar.Grid(x + 900, y, x)), 600)
