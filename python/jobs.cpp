@@ -27,6 +27,12 @@ struct Told {
 /// How long Ctrl-C may go unheard.
 constexpr std::chrono::milliseconds kBeat(50);
 
+/// Python's False, or numpy's, as a comparison with a number of numpy's gives it; nothing else is.
+bool is_false(const py::object& answer) {
+  py::detail::make_caster<bool> truth;
+  return truth.load(answer, false) && !py::detail::cast_op<bool>(truth);
+}
+
 }  // namespace
 
 void run_job(const py::object& progress, const std::function<void(JobContext&)>& work) {
@@ -73,7 +79,7 @@ void run_job(const py::object& progress, const std::function<void(JobContext&)>&
         throw py::error_already_set();
       }
       if (news && !progress.is_none()) {
-        refused = progress(stage, fraction).is(py::bool_(false)) && !done;
+        refused = is_false(progress(stage, fraction)) && !done;
       }
     } catch (py::error_already_set& error) {
       raised.emplace(std::move(error));

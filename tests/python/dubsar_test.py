@@ -719,6 +719,12 @@ class Pipeline(Scans):
     def test_false_stops(self):
         with self.assertRaises(dubsar.Cancelled):
             dubsar.register(self.grids, progress=lambda stage, fraction: False)
+        with self.assertRaises(dubsar.Cancelled):
+            dubsar.register(self.grids, progress=lambda stage, fraction: np.float64(fraction) > 2)
+
+    def test_nothing_else_stops(self):
+        for answer in (None, True, 0, np.int64(0), "", np.bool_(True)):
+            self.assertEqual(len(dubsar.register(self.grids[:1], progress=lambda stage, fraction: answer)), 1)
 
     def test_what_progress_raises_comes_through(self):
         def broken(stage, fraction):
