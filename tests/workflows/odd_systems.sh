@@ -63,4 +63,11 @@ rm "$folder/stubs/mkdir"
 mkdir "$folder/collection"
 expect 2 'submit-slurm: sbatch is missing' "$folder/moved/workflows/submit-slurm" "$folder/collection"
 [ ! -e "$folder/collection/log" ] || fail "submit-slurm leaves a list where there is no Slurm"
+
+# A CDPATH of the caller, in which another clone lies.
+mkdir -p "$folder/moved/docs" "$folder/other/fuzz"
+cp -r "$source/fuzz" "$folder/moved"
+cp "$source/docs/reliability.md" "$folder/moved/docs"
+(cd "$folder/moved" && CDPATH=$folder/other fuzz/campaign --table) || fail "fuzz/campaign --table with a CDPATH"
+cmp "$source/docs/reliability.md" "$folder/moved/docs/reliability.md" || fail "docs/reliability.md has another table than fuzz/executions.tsv"
 echo "all well"
