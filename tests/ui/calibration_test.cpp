@@ -21,8 +21,7 @@
 #include "station/calibration_run.h"
 #include "station/verification.h"
 #include "tests/station/support/command.h"
-#include "tests/support/temporary_folder.h"
-#include "tests/ui/support/display.h"
+#include "tests/ui/support/on_a_display.h"
 
 namespace dubsar {
 namespace {
@@ -87,12 +86,10 @@ void write_scan_of_a_ball(const fs::path& file) {
   ASSERT_TRUE(write_grid_ply(file, grid).has_value());
 }
 
-class CalibrationBox : public ::testing::Test {
+class CalibrationBox : public test::OnADisplay {
  protected:
   void SetUp() override {
-    if (!display_.works()) {
-      FAIL() << "there is no Xvfb here: install xvfb (packages.txt)";
-    }
+    ASSERT_NO_FATAL_FAILURE(OnADisplay::SetUp());
     ASSERT_TRUE(write_file_atomically(at("rig.toml"), kRig).has_value());
     RigCalibration rig = sim::frame_rig({});
     rig.made_at = "2026-01-02T03:04:05Z";
@@ -120,9 +117,6 @@ class CalibrationBox : public ::testing::Test {
   static std::string retype(const std::string& line, const std::string& text) {
     return "click " + line + "\nkey selectall\ntype " + text + "\n";
   }
-
-  test::TemporaryFolder folder_;
-  test::Display display_;
 };
 
 TEST_F(CalibrationBox, TheDailyMeasurementIsAskedForDoneAndLogged) {

@@ -11,8 +11,7 @@
 #include "build_paths.h"
 #include "station/device_panel.h"
 #include "tests/station/support/command.h"
-#include "tests/support/temporary_folder.h"
-#include "tests/ui/support/display.h"
+#include "tests/ui/support/on_a_display.h"
 
 namespace dubsar {
 namespace {
@@ -22,13 +21,8 @@ using test::run_command;
 using ::testing::Contains;
 using ::testing::Pair;
 
-class Camera : public ::testing::Test {
+class Camera : public test::OnADisplay {
  protected:
-  void SetUp() override {
-    if (!display_.works()) {
-      FAIL() << "there is no Xvfb here: install xvfb (packages.txt)";
-    }
-  }
   Outcome play(const std::string& script) {
     const auto file = folder_.path() / "camera.script";
     std::ofstream(file) << script;
@@ -41,9 +35,6 @@ class Camera : public ::testing::Test {
     const Result<SessionStore> store = SessionStore::open(session(), SessionStore::Access::kReadOnly);
     return store ? kept_settings(*store, "eye:").value_or(SettingWords{}) : SettingWords{};
   }
-
-  test::TemporaryFolder folder_;
-  test::Display display_;
 };
 
 TEST_F(Camera, TheExposureIsJudgedAndSetBeforeAndBetweenScans) {

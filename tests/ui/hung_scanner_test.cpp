@@ -10,8 +10,7 @@
 
 #include "build_paths.h"
 #include "tests/station/support/command.h"
-#include "tests/support/temporary_folder.h"
-#include "tests/ui/support/display.h"
+#include "tests/ui/support/on_a_display.h"
 
 namespace dubsar {
 namespace {
@@ -21,13 +20,8 @@ using test::run_command;
 using ::testing::HasSubstr;
 using ::testing::SizeIs;
 
-class HungScanner : public ::testing::Test {
+class HungScanner : public test::OnADisplay {
  protected:
-  void SetUp() override {
-    if (!display_.works()) {
-      FAIL() << "there is no Xvfb here: install xvfb (packages.txt)";
-    }
-  }
   /// Up to the middle of a second scan, and from there on as `script` has it.
   [[nodiscard]] Outcome play(const std::string& script) const {
     const auto file = folder_.path() / "a.script";
@@ -54,9 +48,6 @@ class HungScanner : public ::testing::Test {
     EXPECT_THAT(run_command({"session", "list", session(), "--json"}).json()["scans"], SizeIs(1));
   }
   [[nodiscard]] std::string session() const { return (folder_.path() / "session").string(); }
-
-  test::TemporaryFolder folder_;
-  test::Display display_;
 };
 
 TEST_F(HungScanner, AfterStopItIsSaidAndTheWindowCanBeClosed) {

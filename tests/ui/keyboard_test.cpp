@@ -11,8 +11,7 @@
 #include "acquisition/session_store.h"
 #include "station/tablet_record.h"
 #include "tests/station/support/command.h"
-#include "tests/support/temporary_folder.h"
-#include "tests/ui/support/display.h"
+#include "tests/ui/support/on_a_display.h"
 #include "tests/ui/support/on_a_tablet.h"
 
 namespace dubsar {
@@ -23,14 +22,8 @@ using test::run_command;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-class Keyboard : public ::testing::Test {
+class Keyboard : public test::OnADisplay {
  protected:
-  void SetUp() override {
-    if (!display_.works()) {
-      FAIL() << "there is no Xvfb here: install xvfb (packages.txt)";
-    }
-  }
-  [[nodiscard]] std::string in(const std::string& name) const { return (folder_.path() / name).string(); }
   [[nodiscard]] Outcome play(const std::string& script, const std::string& more = {}) const {
     EXPECT_THAT(script, Not(HasSubstr("click")));
     std::ofstream(in("a.script")) << script;
@@ -38,9 +31,6 @@ class Keyboard : public ::testing::Test {
                         "sim:?seed=1&size=20x16x8&spacing=0.25&noise=0.02" + more, "--script", in("a.script"),
                         "--width", "1366", "--height", "768"});
   }
-
-  test::TemporaryFolder folder_;
-  test::Display display_;
 };
 
 TEST_F(Keyboard, ReachesEveryBoxAndWhatStandsInIt) {

@@ -17,8 +17,7 @@
 #include "station/tablet_record.h"
 #include "tests/station/support/command.h"
 #include "tests/station/support/two_fold_scans.h"
-#include "tests/support/temporary_folder.h"
-#include "tests/ui/support/display.h"
+#include "tests/ui/support/on_a_display.h"
 
 namespace dubsar {
 namespace {
@@ -31,13 +30,8 @@ constexpr const char* kSmallTablet = "sim:?seed=1&size=20x16x8&spacing=0.2&noise
 /// Of which the fourth scan fits nowhere for certain until the fifth has come.
 constexpr const char* kAskingTablet = "sim:?seed=12&size=20x16x8&spacing=0.2&noise=0.02";
 
-class OperatorStory : public ::testing::Test {
+class OperatorStory : public test::OnADisplay {
  protected:
-  void SetUp() override {
-    if (!display_.works()) {
-      FAIL() << "there is no Xvfb here: install xvfb (packages.txt)";
-    }
-  }
   Outcome play(const std::string& script) { return play_on(kSmallTablet, script); }
   /// Without a device: on the one that the window takes by itself.
   Outcome play_on(const std::string& device, const std::string& script) {
@@ -50,9 +44,6 @@ class OperatorStory : public ::testing::Test {
     return run_command(words);  // the session as a shell completes it
   }
   [[nodiscard]] std::string session() const { return (folder_.path() / "session").string(); }
-
-  test::TemporaryFolder folder_;
-  test::Display display_;
 };
 
 constexpr const char* kStory = R"(

@@ -10,8 +10,7 @@
 #include <fstream>
 
 #include "tests/station/support/command.h"
-#include "tests/support/temporary_folder.h"
-#include "tests/ui/support/display.h"
+#include "tests/ui/support/on_a_display.h"
 #include "tests/ui/support/read_png.h"
 
 namespace dubsar {
@@ -20,23 +19,14 @@ namespace {
 using test::Outcome;
 using test::run_command;
 
-class OperatorWindow : public ::testing::Test {
+class OperatorWindow : public test::OnADisplay {
  protected:
-  void SetUp() override {
-    if (!display_.works()) {
-      FAIL() << "there is no Xvfb here: install xvfb (packages.txt)";
-    }
-  }
-  [[nodiscard]] std::string in(const std::string& name) const { return (folder_.path() / name).string(); }
   [[nodiscard]] Outcome play(const std::string& script, const char* width = "1366") const {
     std::ofstream(in("a.script")) << script;
     return run_command({"station", "--session", in("session"), "--device",
                         "sim:?seed=1&size=20x16x8&spacing=0.25&noise=0.02", "--script", in("a.script"),
                         "--width", width, "--height", "768"});
   }
-
-  test::TemporaryFolder folder_;
-  test::Display display_;
 };
 
 TEST_F(OperatorWindow, PedalsScansThatAreFixedAndOnesThatAreTakenAgain) {

@@ -9,8 +9,7 @@
 #include "acquisition/session_store.h"
 #include "tests/station/support/command.h"
 #include "tests/station/support/two_fold_scans.h"
-#include "tests/support/temporary_folder.h"
-#include "tests/ui/support/display.h"
+#include "tests/ui/support/on_a_display.h"
 
 namespace dubsar {
 namespace {
@@ -18,13 +17,9 @@ namespace {
 using test::Outcome;
 using test::run_command;
 
-TEST(ScannedElsewhere, ScansThatNobodyJudgedAreJudgedAndSignedWithoutAScanner) {
-  const test::Display display;
-  if (!display.works()) {
-    FAIL() << "there is no Xvfb here: install xvfb (packages.txt)";
-  }
-  const test::TemporaryFolder folder;
-  const auto in = [&](const char* name) { return (folder.path() / name).string(); };
+using ScannedElsewhere = test::OnADisplay;
+
+TEST_F(ScannedElsewhere, ScansThatNobodyJudgedAreJudgedAndSignedWithoutAScanner) {
   {
     Result<SessionStore> store = SessionStore::open_or_create(in("session"));
     ASSERT_TRUE(store) << store.error().line();

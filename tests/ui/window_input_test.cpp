@@ -12,6 +12,7 @@
 #include "tests/station/support/command.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/ui/support/display.h"
+#include "tests/ui/support/on_a_display.h"
 #include "tests/ui/support/read_png.h"
 
 namespace dubsar {
@@ -44,7 +45,7 @@ TEST(WindowInput, ADisplayWithoutOpenGlIsOneLineAndStatusThree) {
   EXPECT_THAT(outcome.complaints().front(), HasSubstr("OpenGL 4.1"));
 }
 
-class MeshInput : public ::testing::Test {
+class MeshInput : public test::OnADisplay {
  protected:
   Outcome look_at(const std::string& name, const std::string& bytes, const std::string& script) {
     const auto mesh = folder_.path() / name;
@@ -54,13 +55,6 @@ class MeshInput : public ::testing::Test {
     return run_command({"station", "--mesh", mesh.string(), "--script", file.string(), "--width", "1024",
                         "--height", "640"});
   }
-  void SetUp() override {
-    if (!display_.works()) {
-      FAIL() << "there is no Xvfb here: install xvfb (packages.txt)";
-    }
-  }
-  test::TemporaryFolder folder_;
-  test::Display display_;
 };
 
 constexpr const char* kLook = "wait whole\ndrag surface 0.3 0.3 0.6 0.6\nwheel surface 3\nwait idle\nquit\n";
@@ -304,7 +298,6 @@ TEST_F(MeshInput, APictureIsOfOneFieldWhateverIsChosenMeanwhile) {
 TEST_F(MeshInput, TwoSideBySideTurnTogetherOrAlone) {
   std::ofstream(folder_.path() / "left.obj") << grooved_plate();
   std::ofstream(folder_.path() / "right.obj") << grooved_plate();
-  const auto in = [&](const char* name) { return (folder_.path() / name).string(); };
   std::ofstream(in("pair.script")) << "wait whole\nwait idle\nscreenshot " << in("both.png")
                                    << "\ndrag left-tablet 0.5 0.5 0.7 0.6\nwait whole\nscreenshot "
                                    << in("together.png") << "\nkey l\nwait turned-alone\nkey 1\n"
@@ -347,7 +340,6 @@ TEST_F(MeshInput, TwoSideBySideTurnTogetherOrAlone) {
 }
 
 TEST_F(MeshInput, OfTwoSideBySideTheSideThatWasAskedForStaysWhenTheWindowIsResized) {
-  const auto in = [&](const char* name) { return (folder_.path() / name).string(); };
   std::ofstream(in("left.obj")) << grooved_plate();
   std::ofstream(in("pair.script")) << "wait whole\nwait idle\nkey 3\nresize 1100 700\nwait whole\nscreenshot "
                                    << in("resized.png") << "\nkey 3\nwait whole\nscreenshot "
@@ -375,7 +367,6 @@ TEST_F(MeshInput, OfTwoSideBySideTheSideThatWasAskedForStaysWhenTheWindowIsResiz
 }
 
 TEST_F(MeshInput, OfTwoSideBySideEachIsDoubtedAsItIsAlone) {
-  const auto in = [&](const char* name) { return (folder_.path() / name).string(); };
   std::ofstream(in("left.obj")) << grooved_plate();
   std::istringstream plate(grooved_plate());
   std::ofstream in_metres(in("right.obj"));
@@ -409,7 +400,6 @@ TEST_F(MeshInput, OfTwoSideBySideEachIsDoubtedAsItIsAlone) {
 
 /// As in large letters, in the language with the longer words.
 TEST_F(MeshInput, WhereTheWindowIsNarrowTheBarOfTwoTakesMoreRows) {
-  const auto in = [&](const char* name) { return (folder_.path() / name).string(); };
   std::ofstream(in("left.obj")) << grooved_plate();
   std::ofstream(in("narrow.script")) << "wait whole\nexpect whole.view.bottom\nexpect whole.together\n"
                                         "expect whole.lamp\nclick lamp\nquit\n";

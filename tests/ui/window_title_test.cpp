@@ -10,8 +10,7 @@
 #include <thread>
 
 #include "tests/station/support/command.h"
-#include "tests/support/temporary_folder.h"
-#include "tests/ui/support/display.h"
+#include "tests/ui/support/on_a_display.h"
 #include "tests/ui/support/window_names.h"
 
 namespace dubsar {
@@ -20,13 +19,9 @@ namespace {
 using test::Outcome;
 using test::run_command;
 
-TEST(WindowTitleBar, NamesTheSessionAndTheScannerAndThenTheTablet) {
-  const test::Display display;
-  if (!display.works()) {
-    FAIL() << "there is no Xvfb here: install xvfb (packages.txt)";
-  }
-  const test::TemporaryFolder folder;
-  const auto in = [&](const char* name) { return (folder.path() / name).string(); };
+using WindowTitleBar = test::OnADisplay;
+
+TEST_F(WindowTitleBar, NamesTheSessionAndTheScannerAndThenTheTablet) {
   std::ofstream(in("a.script")) << "wait idle\npause 1\nclick tablet\nclick museum-number\ntype BM 15285\n"
                                    "click close-tablet\npause 1\nquit\n";
   std::future<Outcome> run = std::async(std::launch::async, [&] {

@@ -15,7 +15,7 @@ class Display {
   ~Display();
   Display(const Display&) = delete;
   Display& operator=(const Display&) = delete;
-  /// False when there is no Xvfb here: the test is then to be skipped.
+  /// False when there is no Xvfb here.
   [[nodiscard]] bool works() const { return number_ >= 0; }
 
  private:

@@ -2,21 +2,19 @@
 // Copyright The Dubsar developers
 #pragma once
 
-#include <gtest/gtest.h>
-
 #include <filesystem>
 #include <fstream>
 #include <string>
 
 #include "tests/station/support/command.h"
 #include "tests/support/temporary_folder.h"
-#include "tests/ui/support/display.h"
+#include "tests/ui/support/on_a_display.h"
 
 namespace dubsar::test {
 
 /// A test that looks at a small tablet and its wedges through the real window; fails where there is no Xvfb.
 /// The tablet is made once; each test of a suite has a copy.
-class OnATablet : public ::testing::Test {
+class OnATablet : public OnADisplay {
  protected:
   static void SetUpTestSuite() {
     made_ = new TemporaryFolder;
@@ -28,13 +26,10 @@ class OnATablet : public ::testing::Test {
   }
   static void TearDownTestSuite() { delete made_; }
   void SetUp() override {
-    if (!display_.works()) {
-      FAIL() << "there is no Xvfb here: install xvfb (packages.txt)";
-    }
+    ASSERT_NO_FATAL_FAILURE(OnADisplay::SetUp());
     ASSERT_EQ(analysed_, 0);
     std::filesystem::copy(made_->path(), folder_.path(), std::filesystem::copy_options::recursive);
   }
-  [[nodiscard]] std::string in(const std::string& name) const { return (folder_.path() / name).string(); }
   /// In the folder, where what is kept of a mesh goes.
   [[nodiscard]] Outcome play(const std::string& script) const {
     std::ofstream(folder_.path() / "a.script") << script;
@@ -47,8 +42,6 @@ class OnATablet : public ::testing::Test {
 
   inline static TemporaryFolder* made_ = nullptr;
   inline static int analysed_ = -1;
-  Display display_;
-  TemporaryFolder folder_;
 };
 
 }  // namespace dubsar::test
