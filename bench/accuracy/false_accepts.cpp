@@ -86,9 +86,7 @@ Tally run(const Case& c, std::uint64_t seed, double spacing_mm, int gripped_ever
       first = &pose;
       continue;
     }
-    const bench::PairError error = bench::pair_error(
-        scans[static_cast<std::size_t>(first->id)], scans[static_cast<std::size_t>(pose.id)],
-        first->model_from_scanner.inverse() * pose.model_from_scanner);
+    const bench::PairError error = bench::pair_error(scans, *first, pose);
     if (error.wrong()) {
       ++tally.wrong;
       std::printf("WRONG %s %llu: scan %d on scan %d%s, %.2f degrees and %.2f mm off, overlap %.2f\n", c.name,

@@ -227,8 +227,7 @@ void run(const Arguments& arguments, std::uint64_t seed, Sums& sums) {
       continue;
     }
     const bench::TrueScan& base = scans[static_cast<std::size_t>(first->id)];
-    const bench::PairError error =
-        bench::pair_error(base, scan, first->model_from_scanner.inverse() * pose.model_from_scanner);
+    const bench::PairError error = bench::pair_error(scans, *first, pose);
     if (error.wrong()) {
       ++wrong;
       std::printf("WRONG seed %llu scan %d: %.2f degrees %.2f mm off, overlap %.2f\n",

@@ -66,11 +66,8 @@ void run(const RowOptions& options, const std::vector<TrueScan>& scans, std::siz
   const auto true_scan = [&](const ScanPose& pose) -> const TrueScan& {
     return scans[static_cast<std::size_t>(pose.id)];
   };
-  const auto wrong = static_cast<int>(std::erase_if(poses, [&](const ScanPose& pose) {
-    return pair_error(true_scan(reference), true_scan(pose),
-                      reference.model_from_scanner.inverse() * pose.model_from_scanner)
-        .wrong();
-  }));
+  const auto wrong = static_cast<int>(
+      std::erase_if(poses, [&](const ScanPose& pose) { return pair_error(scans, reference, pose).wrong(); }));
   // Where scan b, laid by a, puts what it truly shows, in the tablet's frame.
   const auto moved = [&](const ScanPose& a, const ScanPose& b) {
     return true_scan(a).tablet_from_scanner * a.model_from_scanner.inverse() * b.model_from_scanner *

@@ -148,4 +148,9 @@ PairError pair_error(const TrueScan& a, const TrueScan& b, const RigidTransform&
           a.tablet != b.tablet};
 }
 
+PairError pair_error(std::span<const TrueScan> scans, const ScanPose& a, const ScanPose& b) {
+  return pair_error(scans[static_cast<std::size_t>(a.id)], scans[static_cast<std::size_t>(b.id)],
+                    a.model_from_scanner.inverse() * b.model_from_scanner);
+}
+
 }  // namespace dubsar::bench

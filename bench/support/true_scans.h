@@ -5,12 +5,14 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <span>
 #include <string_view>
 #include <vector>
 
 #include "core/pin_set.h"
 #include "core/range_grid.h"
 #include "core/rigid_transform.h"
+#include "core/scan_pose.h"
 #include "sim/scene.h"
 #include "sim/tablet.h"
 
@@ -66,5 +68,7 @@ struct PairError {
   [[nodiscard]] bool wrong() const { return foreign || turn_deg > 1.0 || shift_mm > 0.5; }
 };
 [[nodiscard]] PairError pair_error(const TrueScan& a, const TrueScan& b, const RigidTransform& a_from_b);
+/// Of two of the scans as they were laid; a pose's id is its scan's place.
+[[nodiscard]] PairError pair_error(std::span<const TrueScan> scans, const ScanPose& a, const ScanPose& b);
 
 }  // namespace dubsar::bench

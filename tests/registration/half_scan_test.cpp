@@ -85,8 +85,7 @@ TEST_P(HalfScan, ThatASessionBeginsWithSpoilsNothing) {
       continue;
     }
     ASSERT_EQ(poses[k].status, PoseStatus::kRegistered) << poses[k].reason;
-    const bench::PairError error = bench::pair_error(
-        scans[1], scans[k], poses[1].model_from_scanner.inverse() * poses[k].model_from_scanner);
+    const bench::PairError error = bench::pair_error(scans, poses[1], poses[k]);
     EXPECT_LT(error.shift_mm, 0.004) << k;
     EXPECT_LT(error.turn_deg, 0.02) << k;
   }

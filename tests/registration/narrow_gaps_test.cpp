@@ -96,8 +96,7 @@ int right_of(const std::vector<bench::TrueScan>& scans, double most_mm) {
       ADD_FAILURE() << k << ": " << poses[k].reason;
       continue;
     }
-    const bench::PairError error = bench::pair_error(
-        scans[0], scans[k], poses[0].model_from_scanner.inverse() * poses[k].model_from_scanner);
+    const bench::PairError error = bench::pair_error(scans, poses[0], poses[k]);
     EXPECT_LT(error.shift_mm, most_mm) << k;
     ++right;
   }

@@ -39,9 +39,7 @@ Outcome register_all(const std::vector<bench::TrueScan>& scans) {
       first = &pose;
       continue;
     }
-    const bench::PairError error = bench::pair_error(
-        scans[static_cast<std::size_t>(first->id)], scans[static_cast<std::size_t>(pose.id)],
-        first->model_from_scanner.inverse() * pose.model_from_scanner);
+    const bench::PairError error = bench::pair_error(scans, *first, pose);
     outcome.wrong += error.wrong() ? 1 : 0;
     outcome.worst_mm = std::max(outcome.worst_mm, error.shift_mm);
     const bench::TrueScan& scan = scans[static_cast<std::size_t>(pose.id)];
