@@ -6,7 +6,6 @@
 #define _POSIX_C_SOURCE 200809L
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 #include <time.h>
 
 #include "tests/support/plain_driver.h"
@@ -36,15 +35,9 @@ static void close_device(dubsar_device* device) {
 }
 
 static int32_t capabilities(dubsar_device* device, dubsar_capabilities* out, dubsar_error* error) {
-  dubsar_capabilities filled;
   (void)device;
   (void)error;
-  memset(&filled, 0, sizeof filled);
-  filled.struct_size = out->struct_size;
-  filled.scan_count = -1;
-  filled.calibration_age_days = -1;
-  strcpy(filled.serial, "PACED-1");
-  return plain_give_capabilities(&filled, out);
+  return plain_capabilities(0, "PACED-1", out);
 }
 
 static void wait_until(const struct timespec* start, int64_t profile) {
@@ -58,16 +51,9 @@ static void wait_until(const struct timespec* start, int64_t profile) {
 
 static int32_t scan(dubsar_device* device, const dubsar_sink* sink, dubsar_error* error) {
   const float spacing = 0.025f;
-  dubsar_scan_info info;
+  const dubsar_scan_info info = plain_scan_info(COLS, spacing, "paced PACED-1");
   dubsar_scan_end end = {sizeof end, DUBSAR_OK, 0, 0, 0};
   struct timespec start;
-  memset(&info, 0, sizeof info);
-  info.struct_size = sizeof info;
-  info.cols = COLS;
-  info.spacing_mm = spacing;
-  info.view.struct_size = sizeof info.view;
-  info.view.direction[2] = -1;
-  info.device_id = "paced PACED-1";
   if (sink->begin(sink->user, &info) != 0) {
     return plain_cancelled(sink, &end, error);
   }

@@ -40,4 +40,39 @@ static inline int32_t plain_give_capabilities(const dubsar_capabilities* filled,
   return DUBSAR_OK;
 }
 
+/* What a scanner can do that moves nothing and has no end. */
+static inline int32_t plain_capabilities(uint32_t flags, const char* serial, dubsar_capabilities* out) {
+  dubsar_capabilities filled;
+  memset(&filled, 0, sizeof filled);
+  filled.struct_size = out->struct_size;
+  filled.flags = flags;
+  filled.scan_count = -1;
+  filled.calibration_age_days = -1;
+  strcpy(filled.serial, serial);
+  return plain_give_capabilities(&filled, out);
+}
+
+static inline int32_t plain_describe(const dubsar_setting* settings, size_t count,
+                                     dubsar_setting_callback callback, void* user) {
+  for (size_t i = 0; i < count; ++i) {
+    if (callback(user, &settings[i]) != 0) {
+      return DUBSAR_CANCELLED;
+    }
+  }
+  return DUBSAR_OK;
+}
+
+/* A scan that looks straight down. */
+static inline dubsar_scan_info plain_scan_info(int32_t cols, double spacing_mm, const char* device_id) {
+  dubsar_scan_info info;
+  memset(&info, 0, sizeof info);
+  info.struct_size = sizeof info;
+  info.cols = cols;
+  info.spacing_mm = spacing_mm;
+  info.view.struct_size = sizeof info.view;
+  info.view.direction[2] = -1;
+  info.device_id = device_id;
+  return info;
+}
+
 #endif

@@ -106,12 +106,7 @@ static int32_t describe_settings(dubsar_device* device, dubsar_setting_callback 
   };
   (void)device;
   (void)error;
-  for (size_t i = 0; i < sizeof settings / sizeof settings[0]; ++i) {
-    if (callback(user, &settings[i]) != 0) {
-      return DUBSAR_CANCELLED;
-    }
-  }
-  return DUBSAR_OK;
+  return plain_describe(settings, sizeof settings / sizeof settings[0], callback, user);
 }
 
 static int32_t get_setting(dubsar_device* device, const char* key, dubsar_value* value, dubsar_error* error) {

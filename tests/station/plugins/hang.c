@@ -64,14 +64,9 @@ static void close_device(dubsar_device* device) {
 }
 
 static int32_t capabilities(dubsar_device* device, dubsar_capabilities* out, dubsar_error* error) {
-  dubsar_capabilities filled;
   (void)device;
   (void)error;
-  memset(&filled, 0, sizeof filled);
-  filled.struct_size = out->struct_size;
-  filled.scan_count = -1;
-  filled.calibration_age_days = -1;
-  return plain_give_capabilities(&filled, out);
+  return plain_capabilities(0, "", out);
 }
 
 static void hang(const dubsar_device* device, int64_t row) {
@@ -98,14 +93,7 @@ static int32_t scan(dubsar_device* device, const dubsar_sink* sink, dubsar_error
   const int64_t rows = hangs && device->deaf ? INT64_MAX : ROWS;
   float x[COLS], y[COLS], z[COLS];
   dubsar_scan_end end = {.struct_size = sizeof end};
-  dubsar_scan_info info;
-  memset(&info, 0, sizeof info);
-  info.struct_size = sizeof info;
-  info.cols = COLS;
-  info.spacing_mm = 0.2;
-  info.view.struct_size = sizeof info.view;
-  info.view.direction[2] = -1;
-  info.device_id = "hang";
+  const dubsar_scan_info info = plain_scan_info(COLS, 0.2, "hang");
   if (sink->begin(sink->user, &info) != 0) {
     return plain_cancelled(sink, &end, error);
   }

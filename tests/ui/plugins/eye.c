@@ -44,16 +44,9 @@ static void close_device(dubsar_device* device) {
 }
 
 static int32_t capabilities(dubsar_device* device, dubsar_capabilities* out, dubsar_error* error) {
-  dubsar_capabilities filled;
   (void)device;
   (void)error;
-  memset(&filled, 0, sizeof filled);
-  filled.struct_size = out->struct_size;
-  filled.flags = DUBSAR_YIELDS_FRAMES;
-  filled.scan_count = -1;
-  filled.calibration_age_days = -1;
-  strcpy(filled.serial, "EYE-1");
-  return plain_give_capabilities(&filled, out);
+  return plain_capabilities(DUBSAR_YIELDS_FRAMES, "EYE-1", out);
 }
 
 static int32_t describe_settings(dubsar_device* device, dubsar_setting_callback callback, void* user,
@@ -68,12 +61,7 @@ static int32_t describe_settings(dubsar_device* device, dubsar_setting_callback 
   };
   (void)device;
   (void)error;
-  for (size_t i = 0; i < sizeof settings / sizeof settings[0]; ++i) {
-    if (callback(user, &settings[i]) != 0) {
-      return DUBSAR_CANCELLED;
-    }
-  }
-  return DUBSAR_OK;
+  return plain_describe(settings, sizeof settings / sizeof settings[0], callback, user);
 }
 
 static int32_t get_setting(dubsar_device* device, const char* key, dubsar_value* value, dubsar_error* error) {
@@ -161,18 +149,11 @@ static int32_t frame_counters(dubsar_device* device, dubsar_frame_counters* coun
 
 static int32_t scan(dubsar_device* device, const dubsar_sink* sink, dubsar_error* error) {
   float x[COLS], y[COLS], z[COLS];
-  dubsar_scan_info info;
+  const dubsar_scan_info info = plain_scan_info(COLS, 0.2, "eye EYE-1");
   dubsar_scan_end end = {sizeof end, DUBSAR_OK, 0, 0, 0};
   if (device->runs) {
     return plain_problem(error, DUBSAR_DEVICE, "the camera is being looked through");
   }
-  memset(&info, 0, sizeof info);
-  info.struct_size = sizeof info;
-  info.cols = COLS;
-  info.spacing_mm = 0.2;
-  info.view.struct_size = sizeof info.view;
-  info.view.direction[2] = -1;
-  info.device_id = "eye EYE-1";
   if (sink->begin(sink->user, &info) != 0) {
     return plain_cancelled(sink, &end, error);
   }
