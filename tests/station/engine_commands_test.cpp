@@ -63,6 +63,18 @@ std::vector<int> ids_of(const std::vector<ScanPose>& poses) {
   return ids;
 }
 
+/// The scans that were not taken out.
+std::vector<int> standing_in(const SessionStore& store) {
+  std::vector<int> ids;
+  const auto stored = store.scans();
+  for (const StoredScan& scan : *stored) {
+    if (!scan.dropped) {
+      ids.push_back(scan.id);
+    }
+  }
+  return ids;
+}
+
 TEST(EngineCommands, DropRestoreAndLock) {
   const test::TemporaryFolder folder;
   const auto scans = test::write_bumpy_scans(folder.path() / "scans", 4);
@@ -85,13 +97,7 @@ TEST(EngineCommands, DropRestoreAndLock) {
   EXPECT_FALSE(engine.post(UnlockScan{1}));
   const Result<SessionStore> store = SessionStore::open(session, SessionStore::Access::kReadOnly);
   ASSERT_TRUE(store.has_value());
-  std::vector<int> standing;
-  const auto stored = store->scans();
-  for (const StoredScan& scan : *stored) {
-    if (!scan.dropped) {
-      standing.push_back(scan.id);
-    }
-  }
+  const std::vector<int> standing = standing_in(*store);
   EXPECT_EQ(standing.size(), 3U);
   EXPECT_EQ(ids_of(result->poses), standing);
   EXPECT_EQ(result->red_map.scans.size(), 3U);
@@ -120,13 +126,7 @@ TEST(EngineCommands, AScanIsTakenOutBeforeItIsPlaced) {
     ASSERT_TRUE(result.has_value()) << result.error().line();
     const Result<SessionStore> store = SessionStore::open(session, SessionStore::Access::kReadOnly);
     ASSERT_TRUE(store.has_value());
-    std::vector<int> standing;
-    const auto stored = store->scans();
-    for (const StoredScan& scan : *stored) {
-      if (!scan.dropped) {
-        standing.push_back(scan.id);
-      }
-    }
+    const std::vector<int> standing = standing_in(*store);
     EXPECT_EQ(ids_of(result->poses), standing) << (put_back ? "put back" : "out");
     EXPECT_EQ(result->red_map.scans.size(), standing.size());
   }

@@ -28,18 +28,8 @@ class KeptInSession : public ::testing::Test {
   SessionStore store_ = SessionStore::open_or_create(folder_.path() / "s").value();
 };
 
-/// A square of 1 mm in a plane: there is no wedge in it.
-Mesh blank() {
-  Mesh mesh;
-  for (int v = 0; v < 4; ++v) {
-    mesh.positions.emplace_back(static_cast<float>(v % 2), static_cast<float>(v / 2), 0.0F);
-  }
-  test::add_raster_faces(mesh, 0, 1);
-  return mesh;
-}
-
 TEST_F(KeptInSession, WedgesOfAnotherMethodAreMeasuredAnew) {
-  const Mesh mesh = blank();
+  const Mesh mesh = test::blank_square();
   ASSERT_TRUE(keep_wedges(store_, mesh, {}).value());
   ASSERT_TRUE(stored_wedges(store_, mesh, {}));
   nlohmann::json document = nlohmann::json::parse(store_.load_document("wedges").value().value());

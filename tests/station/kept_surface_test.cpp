@@ -24,20 +24,10 @@ namespace {
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-/// A square of 1 mm in a plane: there is no wedge in it.
-Mesh blank() {
-  Mesh mesh;
-  for (int v = 0; v < 4; ++v) {
-    mesh.positions.emplace_back(static_cast<float>(v % 2), static_cast<float>(v / 2), 0.0F);
-  }
-  test::add_raster_faces(mesh, 0, 1);
-  return mesh;
-}
-
 TEST(KeptSurface, ALostDrawingIsOfTheWedgesAsTheyAre) {
   const test::TemporaryFolder folder;
   SessionStore store = SessionStore::open_or_create(folder.path() / "s").value();
-  const Mesh mesh = blank();
+  const Mesh mesh = test::blank_square();
   ASSERT_TRUE(write_mesh(store.folder() / kSessionMesh, mesh));
   // Nobody could measure this one on that mesh.
   WedgeFile file;
@@ -74,7 +64,7 @@ void keep(SessionStore& store, const Mesh& mesh, const WedgeFile& file) {
 TEST(KeptSurface, OfWedgesThatAreKeptPagesTellWhatTheyToldWhenTheyWereMeasured) {
   const test::TemporaryFolder folder;
   SessionStore store = SessionStore::open_or_create(folder.path() / "s").value();
-  const Mesh mesh = blank();
+  const Mesh mesh = test::blank_square();
   WedgeFile file;
   file.text_from_model = RigidTransform();
   file.text_certainty = 0.7;
@@ -127,7 +117,7 @@ TEST(KeptSurface, OfWedgesThatAreKeptPagesTellWhatTheyToldWhenTheyWereMeasured) 
 TEST(KeptSurface, PagesThatTellOfAnotherWayOfMeasuringAreTakenBackThoughTheNumberIsTheSame) {
   const test::TemporaryFolder folder;
   SessionStore store = SessionStore::open_or_create(folder.path() / "s").value();
-  const Mesh mesh = blank();
+  const Mesh mesh = test::blank_square();
   ASSERT_TRUE(write_mesh(store.folder() / kSessionMesh, mesh));
   const std::optional<SessionWedges> kept = keep_wedges(store, mesh, {}).value();
   PageFacts facts;

@@ -19,4 +19,14 @@ inline void add_raster_faces(Mesh& mesh, std::uint32_t first, std::uint32_t cell
   }
 }
 
+/// A square of 1 mm in a plane: there is no wedge in it.
+inline Mesh blank_square() {
+  Mesh mesh;
+  for (int v = 0; v < 4; ++v) {
+    mesh.positions.emplace_back(static_cast<float>(v % 2), static_cast<float>(v / 2), 0.0F);
+  }
+  add_raster_faces(mesh, 0, 1);
+  return mesh;
+}
+
 }  // namespace dubsar::test
