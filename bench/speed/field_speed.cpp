@@ -5,7 +5,6 @@
 // of other programs, and the peak of memory.
 //   dubsar-field-speed [0|1|2 …]   which of the three; all without
 
-#include <sys/resource.h>
 #include <tbb/global_control.h>
 #include <tbb/info.h>
 
@@ -20,6 +19,7 @@
 #include "analysis/integral_invariants.h"
 #include "analysis/surface_fields.h"
 #include "bench/support/options.h"
+#include "bench/support/peak_memory.h"
 #include "bench/support/statistics.h"
 #include "core/stage_times.h"
 #include "sim/tablet.h"
@@ -48,12 +48,6 @@ const Case kCases[] = {{"Bo 2743, 3 193 251 faces",
                         {110, 80, 30},
                         0.05749,
                         {{"curvature", 4.9}, {"openness", 8.8}, {"poisson", 41.9}, {"height", 121.5}}}};
-
-double peak_gib() {
-  rusage usage{};
-  getrusage(RUSAGE_SELF, &usage);
-  return static_cast<double>(usage.ru_maxrss) / (1024.0 * 1024.0);
-}
 
 int time_case(const Case& c) {
   JobContext job;

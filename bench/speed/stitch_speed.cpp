@@ -6,7 +6,6 @@
 //   dubsar-stitch-speed --adding MILLIONS                      seconds to take up each scan (no mesh yet)
 //   dubsar-stitch-speed --write FOLDER MILLIONS                the scans and poses.json, for `dubsar stitch`
 
-#include <sys/resource.h>
 #include <tbb/info.h>
 
 #include <CLI/CLI.hpp>
@@ -21,6 +20,7 @@
 #include <vector>
 
 #include "bench/support/options.h"
+#include "bench/support/peak_memory.h"
 #include "bench/support/simulated_views.h"
 #include "bench/support/statistics.h"
 #include "core/heap.h"
@@ -34,12 +34,6 @@ namespace {
 using namespace dubsar;
 using namespace dubsar::bench;
 using Clock = std::chrono::steady_clock;
-
-double peak_gib() {
-  rusage usage{};
-  getrusage(RUSAGE_SELF, &usage);
-  return static_cast<double>(usage.ru_maxrss) / (1024.0 * 1024.0);
-}
 
 /// The most that was resident since this was last asked; 0 where the kernel does not tell.
 double peak_since_asked_gib() {

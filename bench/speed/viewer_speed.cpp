@@ -10,8 +10,6 @@
 // Without a display it starts one of its own (Xvfb, drawn by the processor); --card takes a graphics card
 // that no display is on.
 
-#include <sys/resource.h>
-
 #include <CLI/CLI.hpp>
 #include <cmath>
 #include <cstdio>
@@ -22,6 +20,7 @@
 #include "bench/speed/viewer_frames.h"
 #include "bench/support/opened_view.h"
 #include "bench/support/options.h"
+#include "bench/support/peak_memory.h"
 #include "bench/support/pebble.h"
 #include "bench/support/statistics.h"
 #include "core/stage_times.h"
@@ -56,9 +55,7 @@ int time_opening(const std::string& file) {
   if (!open_mesh(file)) {
     return 2;
   }
-  rusage usage{};
-  getrusage(RUSAGE_SELF, &usage);
-  std::printf("  %-34s %7.2f GiB\n", "peak of memory", static_cast<double>(usage.ru_maxrss) / 1048576.0);
+  std::printf("  %-34s %7.2f GiB\n", "peak of memory", peak_gib());
   return 0;
 }
 
