@@ -69,6 +69,22 @@ std::string open_points(const ReportInput& input) {
   return items;
 }
 
+/// That the tablet need not be touched again; of clay that this scanner cannot show it is not made.
+std::string promise(const RedMap& map) {
+  RegionSum hidden;
+  for (const RedRegion& region : map.regions) {
+    if (region.state == RegionState::kExcused && region.excuse == Excuse::kUnreachable && !is_stray(region)) {
+      ++hidden.count;
+      hidden.area_mm2 += std::isfinite(region.area_mm2) ? region.area_mm2 : 0.0;
+    }
+  }
+  return hidden.count == 0
+             ? "Nobody has to touch the tablet again for its shape."
+             : "Nobody has to touch the tablet again for the shape of that. <strong>" +
+                   counted(hidden.count, "place is", "places are") + " out of its reach, " +
+                   area(hidden.area_mm2) + " by estimate: there the shape is not recorded.</strong>";
+}
+
 }  // namespace
 
 RegionSum sum_of(const RedMap& map, RegionState state) {
@@ -104,8 +120,8 @@ std::string verdict_section(const ReportInput& input) {
   if (is_conclusive(input)) {
     return "<section class=\"verdict yes\">\n<h2>Conclusive</h2>\n<p>Every part of the tablet that this "
            "scanner can "
-           "reach is sampled densely enough. Nobody has to touch the tablet again for its shape.</p>\n" +
-           excuses + "</section>\n";
+           "reach is sampled densely enough. " +
+           promise(input.red_map) + "</p>\n" + excuses + "</section>\n";
   }
   return "<section class=\"verdict no\">\n<h2>Not conclusive</h2>\n<p>The tablet is not yet fully recorded. "
          "What is "

@@ -249,6 +249,26 @@ TEST_F(Report, SaysConclusiveOnlyWhenBothJudgesDo) {
   EXPECT_THAT(html(), HasSubstr("<h2>Not conclusive</h2>"));
 }
 
+TEST_F(Report, PromisesNothingOfWhatIsOutOfReach) {
+  const auto excuse = [](Excuse why, double area_mm2) {
+    RedRegion region;
+    region.state = RegionState::kExcused;
+    region.excuse = why;
+    region.area_mm2 = area_mm2;
+    return region;
+  };
+  const char* all = "Nobody has to touch the tablet again for its shape.";
+  EXPECT_THAT(html(), HasSubstr(all));
+  map_.regions = {excuse(Excuse::kUnneeded, 0.2)};
+  EXPECT_THAT(html(), HasSubstr(all));
+  map_.regions.push_back(excuse(Excuse::kUnreachable, 1900));
+  map_.regions.push_back(excuse(Excuse::kUnreachable, 100));
+  const std::string page = html();
+  EXPECT_THAT(page, HasSubstr("<h2>Conclusive</h2>"));
+  EXPECT_THAT(page, Not(HasSubstr(all)));
+  EXPECT_THAT(page, HasSubstr("2 places are out of its reach, 2000.0 mm²"));
+}
+
 TEST_F(Report, ListsRedPlacesTheirSizesAndWhatToDoNext) {
   map_.conclusive = list_.conclusive = false;
   RedRegion red;
