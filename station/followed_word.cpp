@@ -12,6 +12,7 @@
 #include "formats/pins_json.h"
 #include "formats/poses_json.h"
 #include "registration/point_pairs.h"
+#include "station/made_by.h"
 #include "station/session_pages.h"
 
 namespace dubsar {
@@ -168,6 +169,9 @@ Status save_followed_poses(SessionStore& store, const std::vector<ScanPose>& pos
   if (!before || poses_to_json(*before) != poses_to_json(poses)) {
     if (Status taken = take_pages_back_once(store, "the scans were registered anew", kPlan); !taken) {
       return taken;
+    }
+    if (Status noted = note_placed(store); !noted) {
+      return noted;
     }
   }
   if (const Status saved = store.save_poses(poses); !saved) {

@@ -6,6 +6,7 @@
 #include "formats/checklist_json.h"
 #include "formats/json_node.h"
 #include "formats/red_map_json.h"
+#include "station/made_by.h"
 #include "station/results.h"
 #include "station/session_pages.h"
 
@@ -49,6 +50,9 @@ nlohmann::json lasting_part(const std::string& checklist) {
 }  // namespace
 
 Status keep_verdict(SessionStore& store, const RedMap& red_map, const Checklist& checklist) {
+  if (Status noted = note_judged(store); !noted) {
+    return noted;
+  }
   if (Status kept = keep_red_map(store, red_map); !kept) {
     return kept;
   }

@@ -88,6 +88,10 @@ struct PackageContent {
 [[nodiscard]] std::vector<ProvenanceValue> analysis_parameters(const PackageContent& content);
 /// Which program made what the session keeps; program_name() where that is not known.
 [[nodiscard]] std::string keeper_of(const PackageContent& content);
+/// Which program placed the scans, and which judged them (this one, where the session's verdict is not what
+/// is packed); program_name() where that is not known.
+[[nodiscard]] std::string placer_of(const PackageContent& content);
+[[nodiscard]] std::string judge_of(const PackageContent& content);
 /// Which program measured the wedges, as they say themselves. Only where there are wedges.
 [[nodiscard]] std::string measurer_of(const PackageContent& content);
 /// Where inner edges end, and what a person has corrected.

@@ -106,7 +106,7 @@ void add_steps(const PackageContent& content, const std::vector<std::string>& pa
                ProvenanceInput& input) {
   ProvenanceStep registration{"registration",       "Registration of the scans",      {},
                               {"scans/poses.json"}, registration_parameters(content), {},
-                              keeper_of(content)};
+                              placer_of(content)};
   double worst_rms_mm = 0;
   double worst_sigma_mm = 0;
   bool any_compared = false;
@@ -133,7 +133,7 @@ void add_steps(const PackageContent& content, const std::vector<std::string>& pa
                          {"verdict/red_map.json", "verdict/checklist.json"},
                          verdict_parameters(content),
                          {{"conclusive", content.results().red_map.conclusive ? 1.0 : 0.0, ""}},
-                         content.source.pages() ? keeper_of(content) : program_name()};
+                         judge_of(content)};
   verdict.from.emplace_back("scans/poses.json");
   const std::string model = "model/" + content.stem + ".ply";
   std::vector<ProvenanceStep> steps{std::move(registration), verdict};

@@ -12,6 +12,7 @@
 #include "planning/red_map.h"
 #include "registration/registrar.h"
 #include "station/analysis.h"
+#include "station/made_by.h"
 #include "station/package_content.h"
 #include "station/session_wedges.h"
 #include "triangulation/stitcher.h"
@@ -49,6 +50,16 @@ std::string keeper_of(const PackageContent& content) {
   return content.facts.program.empty() ? program_name() : content.facts.program;
 }
 
+std::string placer_of(const PackageContent& content) {
+  const std::string placed = made_by(content.store).placed;
+  return placed.empty() ? program_name() : placed;
+}
+
+std::string judge_of(const PackageContent& content) {
+  const std::string judged = content.source.pages() ? made_by(content.store).judged : std::string();
+  return judged.empty() ? program_name() : judged;
+}
+
 std::string measurer_of(const PackageContent& content) {
   if (!content.wedges_are_kept) {
     return program_name();
@@ -60,7 +71,7 @@ std::string measurer_of(const PackageContent& content) {
 std::vector<ProvenanceValue> registration_parameters(const PackageContent& content) {
   std::vector<ProvenanceValue> out;
   add_spacing(content, out);
-  if (keeper_of(content) == program_name()) {
+  if (placer_of(content) == program_name()) {
     const RegistrationOptions options;
     out.push_back({"fewest samples of a scan", static_cast<double>(options.least_samples), ""});
     out.push_back({"final rounds of fits and relaxation", static_cast<double>(options.final_rounds), ""});
@@ -77,7 +88,7 @@ std::vector<ProvenanceValue> verdict_parameters(const PackageContent& content) {
       out.push_back({"lateral spacing of the rig", rig->spacing_mm, "mm"});
     }
   }
-  if (!content.source.pages() || keeper_of(content) == program_name()) {
+  if (judge_of(content) == program_name()) {
     const ExcuseOptions excuse = RedMapOptions().excuse;
     out.push_back({"largest error of what is interpolated", excuse.interpolation_mm, "mm"});
     out.push_back({"largest gap that is excused", excuse.largest_gap_mm, "mm"});

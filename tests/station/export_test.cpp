@@ -229,6 +229,18 @@ TEST_F(Export, FindsItsWorkDoneUntilTheSessionOrThePackageChanges) {
   EXPECT_EQ(export_to("found", small).status, 2) << "not what was written: it is not made anew unasked";
 }
 
+/// What the provenance of a package says of a step.
+std::string program_of(const fs::path& bag, const std::string& step) {
+  const auto graph = nlohmann::json::parse(bytes_of(bag / "data/provenance.jsonld"))["@graph"];
+  const auto node = [&](const std::string& ends) {
+    const auto at = std::ranges::find_if(
+        graph, [&](const nlohmann::json& n) { return n["@id"].get<std::string>().ends_with(ends); });
+    return at == graph.end() ? nlohmann::json() : *at;
+  };
+  return node(node("provenance/" + step)["crmdig:L23_used_software_or_firmware"]["@id"])["rdfs:label"]
+      .get<std::string>();
+}
+
 TEST_F(Export, WhatWasCopiedIsThatOfTheProgramThatMadeIt) {
   const fs::path session = at("of_old");
   fs::copy(at("session"), session, fs::copy_options::recursive);
@@ -243,22 +255,33 @@ TEST_F(Export, WhatWasCopiedIsThatOfTheProgramThatMadeIt) {
                          "renderings,features,grid-ply"})
                 .status,
             0);
-  const auto graph = nlohmann::json::parse(bytes_of(at("old_bag") / "data/provenance.jsonld"))["@graph"];
-  const auto node = [&](const std::string& ends) {
-    const auto at = std::ranges::find_if(
-        graph, [&](const nlohmann::json& n) { return n["@id"].get<std::string>().ends_with(ends); });
-    return at == graph.end() ? nlohmann::json() : *at;
-  };
-  const auto program = [&](const std::string& step) {
-    return node(node("provenance/" + step)["crmdig:L23_used_software_or_firmware"]["@id"])["rdfs:label"]
-        .get<std::string>();
-  };
+  const auto program = [&](const std::string& step) { return program_of(at("old_bag"), step); };
   EXPECT_EQ(program("registration"), "Dubsar 0.0.9");
   EXPECT_EQ(program("verdict"), "Dubsar 0.0.9");
   EXPECT_NE(program("packing"), "Dubsar 0.0.9");
   const auto wedges = nlohmann::json::parse(bytes_of(at("old_bag") / "data/wedges/wedges.json"));
   EXPECT_EQ(program("analysis"), wedges["program"].get<std::string>()) << "they say themselves who measured";
   EXPECT_NE(program("analysis"), "Dubsar 0.0.9");
+}
+
+/// `dubsar register` of another version than the one that scanned, for one.
+TEST_F(Export, TheRegistrationIsOfTheProgramThatPlacedTheScansLast) {
+  const fs::path session = at("placed_anew");
+  fs::copy(at("session"), session, fs::copy_options::recursive);
+  {
+    Result<SessionStore> store = SessionStore::open(session);
+    ASSERT_TRUE(store);
+    nlohmann::json run = nlohmann::json::parse(**store->load_document("run"));
+    run["program"] = "Dubsar 0.0.9";
+    ASSERT_TRUE(store->save_document("run", run.dump()));
+    ASSERT_TRUE(store->save_document("programs", R"({"placed":"Dubsar 0.0.10"})"));
+  }
+  ASSERT_EQ(run_command({"export", session.string(), "--to", at("placed_bag").string(), "--without",
+                         "renderings,features,wedges,grid-ply"})
+                .status,
+            0);
+  EXPECT_EQ(program_of(at("placed_bag"), "registration"), "Dubsar 0.0.10");
+  EXPECT_EQ(program_of(at("placed_bag"), "verdict"), "Dubsar 0.0.9");
 }
 
 /// Killed in the very step between taking its place and whatever else it would do, it has to be found done.

@@ -12,6 +12,9 @@
 #include "formats/checklist_json.h"
 #include "formats/poses_json.h"
 #include "formats/red_map_json.h"
+#include "station/followed_word.h"
+#include "station/made_by.h"
+#include "station/results.h"
 #include "tests/station/support/bumpy_scans.h"
 #include "tests/support/temporary_folder.h"
 #include "triangulation/placed_precision.h"
@@ -46,6 +49,23 @@ class SessionPages : public ::testing::Test {
   RangeGrid grid_ = test::bumpy_scan(0);
   ScanPose pose_;
 };
+
+TEST_F(SessionPages, WhoPlacedAndWhoJudgedTheScansLastIsToldBesideWhoScanned) {
+  pose_.rms_mm = 0.1;
+  ASSERT_TRUE(save_followed_poses(store_, {pose_}));
+  ASSERT_TRUE(keep_verdict(store_, RedMap(), Checklist()));
+  EXPECT_FALSE(store_.load_document("programs").value()) << "the run that is under way tells it at its end";
+  ASSERT_TRUE(store_.save_document("run", R"({"program":"Dubsar 0.0.9"})"));
+  EXPECT_EQ(made_by(store_).placed, "Dubsar 0.0.9");
+  EXPECT_EQ(made_by(store_).judged, "Dubsar 0.0.9");
+  pose_.rms_mm = 0.2;
+  ASSERT_TRUE(save_followed_poses(store_, {pose_}));
+  EXPECT_EQ(made_by(store_).placed, program_name());
+  EXPECT_EQ(made_by(store_).judged, "Dubsar 0.0.9");
+  ASSERT_TRUE(keep_verdict(store_, RedMap(), Checklist()));
+  EXPECT_EQ(made_by(store_).judged, program_name());
+  EXPECT_EQ(made_by(store_).scanned, "Dubsar 0.0.9");
+}
 
 TEST_F(SessionPages, TheChecklistIsOfTheRedMapWhereSignaturesWereNotHeldAgainstItAnyMore) {
   JobContext job;
