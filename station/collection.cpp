@@ -85,14 +85,6 @@ IndexedTablet read_tablet(const fs::path& path, const std::string& name, std::ch
   if (file->wedges.size() >= kFewestWedges) {
     tablet.profile = comparable(file->wedges);
   }
-  const auto finite = [](float value) { return std::isfinite(value); };
-  if (!std::ranges::all_of(tablet.features, finite) || !std::ranges::all_of(tablet.profile, finite)) {
-    IndexedTablet beyond;
-    beyond.name = name;
-    beyond.stamp = tablet.stamp;
-    beyond.complaint = name + ": measures of its wedges are beyond all bounds";
-    return beyond;
-  }
   return tablet;
 }
 
@@ -125,6 +117,13 @@ Result<WedgeFile> read_compared_wedges(const fs::path& path) {
       wedge.exit_points_mm = wedge.exit_points_surface_mm;
     }
     file->profiles.clear();  // of the other lengths
+  }
+  const auto is_finite = [](float value) { return std::isfinite(value); };
+  if (file && !std::ranges::all_of(file->wedges, [&](const Wedge& wedge) {
+        return std::ranges::all_of(comparable(wedge), is_finite);
+      })) {
+    return bad_input(path.string(), "measures of its wedges are beyond all bounds",
+                     "analyse its mesh again; see that its unit is right");
   }
   return file;
 }

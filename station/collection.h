@@ -44,7 +44,8 @@ inline constexpr std::string_view kNoWedgesJson = "no wedges.json";
 inline constexpr std::size_t kFewestWedges = 5;
 
 /// A wedges.json as it is compared: lengths to where the edges meet the surface, whichever definition was
-/// chosen for it. Else the choice would tell two hands apart.
+/// chosen for it. Else the choice would tell two hands apart. kBadInput also where its measures are such that
+/// nothing can be compared with them.
 [[nodiscard]] Result<WedgeFile> read_compared_wedges(const std::filesystem::path& path);
 
 /// The analysed tablets under a folder, ready to be searched. What is known of them is kept in the folder

@@ -265,6 +265,12 @@ TEST_F(CollectionTest, MeasuresBeyondAllBoundsAreToldApart) {
   ASSERT_TRUE(collection);
   EXPECT_THAT(collection->files()[1].complaint, HasSubstr("beyond all bounds"));
   EXPECT_THAT(collection->files()[0].complaint, IsEmpty());
+  // Nor is any order of others by how far they are from it.
+  const Result<WedgeFile> like = read_compared_wedges(at("b.json"));
+  ASSERT_FALSE(like);
+  EXPECT_EQ(like.error().kind, ErrorKind::kBadInput);
+  EXPECT_THAT(like.error().line(), HasSubstr("beyond all bounds"));
+  EXPECT_TRUE(read_compared_wedges(at("a.json")));
 }
 
 }  // namespace
