@@ -223,6 +223,35 @@ TEST(Tablet, TruthIsConsistent) {
   }
 }
 
+/// The clay before it was written on tells what every other test takes for true: how deep a wedge is, and
+/// where its edges come out.
+TEST(Tablet, DepthsAndExitsOfTheTruthAreThoseOfTheClayThatWasWrittenOn) {
+  TabletOptions options = small_clean_tablet();
+  const SimTablet written = make_or_fail(options);
+  options.text_density = 0;
+  const TestScene blank(make_or_fail(options));
+  ASSERT_TRUE(blank.tablet.wedges.empty());
+  ASSERT_GT(written.wedges.size(), 40U);
+  // Facets of 0.15 to 0.3 mm lie 3 to 11 um below clay that bends over a millimetre, and less elsewhere.
+  constexpr double kFacetMm = 0.02;
+  double depths_mm = 0;
+  double nearest_mm = 0;
+  for (const Wedge& wedge : written.wedges) {
+    const auto above = blank.query.closest(wedge.depth_point_mm.cast<float>(), 5.0F);
+    ASSERT_TRUE(above) << wedge.id;
+    EXPECT_LT(above->distance_mm, wedge.depth_mm + kFacetMm) << wedge.id;
+    depths_mm += wedge.depth_mm;
+    nearest_mm += above->distance_mm;
+    for (const Eigen::Vector3d& exit : wedge.exit_points_mm) {
+      const auto at = blank.query.closest(exit.cast<float>(), 5.0F);
+      ASSERT_TRUE(at) << wedge.id;
+      EXPECT_LT(at->distance_mm, kFacetMm) << wedge.id;
+    }
+  }
+  // At a rim the clay beside may be nearer than that above.
+  EXPECT_GT(nearest_mm, 0.95 * depths_mm);
+}
+
 TEST(Tablet, LaterWedgesOverwriteEarlierOnes) {
   const SimTablet tablet = make_or_fail(small_clean_tablet());
   const auto broken = std::ranges::count_if(tablet.wedges, [](const Wedge& w) { return w.intact < 0.95; });
