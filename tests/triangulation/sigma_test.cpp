@@ -122,11 +122,16 @@ TEST(Sigma, OfARimSampleThatNoOtherScanSupportsIsItsOwn) {
             RigidTransform::from_twist({0, 0, 0}, {side, 0.1 * side, 0.1 * side}), kPoseSigmaMm);
   }
   const Mesh mesh = stitched(set);
+  std::size_t alone = 0;
   for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
     if (mesh.scans[v] == 1) {
       EXPECT_LT(mesh.sigma_mm[v], kPoseSigmaMm);
+      // Where two such poses lie together is known no better than their mean, to 0.08 mm along the normal.
+      EXPECT_GT(mesh.sigma_mm[v], 0.25 * kPoseSigmaMm);
+      ++alone;
     }
   }
+  EXPECT_GT(alone, 800U) << "of 2 x 20 x 40 samples beside the overlap";
 }
 
 /// What a scan of µ = 0.05 mm has of such a surface, whose `holes` nobody saw.
