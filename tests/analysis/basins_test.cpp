@@ -60,6 +60,7 @@ TEST(Basins, TwoPitsAreTwoBasinsWithABorderBetween) {
 TEST(Basins, ListTheirVerticesInRisingHeight) {
   const Field field(0.02);
   const Basins basins = find_basins(field.graph, field.height, field.free_surface, {});
+  ASSERT_GT(basins.count(), 0U);
   for (std::size_t b = 0; b < basins.count(); ++b) {
     const auto vertices = basins.vertices_of(b);
     ASSERT_FALSE(vertices.empty());

@@ -63,6 +63,12 @@ TEST(NormalClusters, FindsThreeDirectionsInNoise) {
                         degrees_between(centre, pit.normal(2))}),
               3.0);
   }
+  for (std::size_t k = 0; k < 3; ++k) {
+    EXPECT_TRUE(std::ranges::any_of(
+        triples.front(),
+        [&](const Eigen::Vector3d& centre) { return degrees_between(centre, pit.normal(k)) < 3.0; }))
+        << "one for each, not thrice the same: " << k;
+  }
 }
 
 TEST(WedgeModel, MeasuresAnIdealPit) {

@@ -68,7 +68,9 @@ TEST(PlacesInField, WhatFitsIsLaidOnItsMiddleAndNothingIsSaid) {
   const ModelSurface surface = block({60, 50, 22});
   EXPECT_TRUE(places_in_field(rig_of_field(70), Eigen::Matrix3d::Identity(), surface).empty());
   const MiddleScan scan(surface.center_mm);
-  for (const ViewCandidate& candidate : rig_candidates(rig_of_field(70), {}, scan.placed, surface)) {
+  const std::vector<ViewCandidate> candidates = rig_candidates(rig_of_field(70), {}, scan.placed, surface);
+  ASSERT_FALSE(candidates.empty());
+  for (const ViewCandidate& candidate : candidates) {
     EXPECT_THAT(candidate.say, testing::Not(HasSubstr("under the scanner")));
     EXPECT_TRUE(!candidate.by_hand || candidate.placement->hand_turn->translation_mm.isZero());
   }

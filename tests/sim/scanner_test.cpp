@@ -135,13 +135,17 @@ TEST(Scanner, TheLaserCannotReachUnderAnOverhang) {
   add_quad(&shelf, {5, -5, 0}, {12, -5, 0}, {12, 5, 0}, {5, 5, 0}, 0.6F);
   const TestScene scene(std::move(shelf));
   const RangeGrid grid = scan(perfect(), scene);
+  int floor = 0;
   for (std::size_t i = 0; i < grid.size(); ++i) {
     if (grid.valid[i] != 0 && grid.z[i] < -9) {
       const Eigen::Vector3f p = grid.point(i);
       // The fan from 250 mm above takes the shelf's x limits down to 10/250 farther out.
       EXPECT_FALSE(p.x() > 5.25F && p.x() < 12.4F && std::abs(p.y()) < 4.9F);
+      ++floor;
     }
   }
+  // Of 900 mm² the shelf shades 74, and hides no more than as many again from the camera.
+  EXPECT_GT(floor, 10000) << "of 22500 cells";
 }
 
 TEST(Scanner, DepthRangeAndGrazingAnglesLimitReturns) {
