@@ -208,6 +208,17 @@ TEST(Documents, LinksLeadToPagesAndTheirHeadings) {
   EXPECT_GT(links, 100);
 }
 
+TEST(Documents, TheirFirstPageLeadsToAll) {
+  const fs::path first = kRoot / "docs/README.md";
+  std::set<fs::path> led_to{first, kRoot / "README.md"};
+  for (const auto& link : links_of(first)) {
+    led_to.insert(link.first);
+  }
+  for (const fs::path& page : pages()) {
+    EXPECT_TRUE(led_to.contains(page)) << first << " does not lead to " << page;
+  }
+}
+
 TEST(Documents, WhatIsNotThereIsTold) {
   EXPECT_EQ(test_in("Suite.Name"), "Suite.Name");
   EXPECT_EQ(test_in("…Name"), "Name");
