@@ -168,7 +168,7 @@ std::string page_renamed(std::string page, const std::string& title, const Table
     return page;
   }
   std::string head = page.substr(0, head_ends);
-  for (const char* kind : {": scan report</title>", ": checklist</title>"}) {
+  for (const char* kind : {": scan report</title>", ": checklist</title>", ": behind</title>"}) {
     put_between(head, "<title>", kind, shown_title(title));
   }
   if (const std::size_t old = head.find(kTabletList); old != std::string::npos) {

@@ -60,8 +60,8 @@ struct ReportPictures;  // archive/report_pictures.h
 [[nodiscard]] std::string checklist_html(const ReportInput& input, const ReportPictures& pictures);
 
 /// The page with another title, and other words on the tablet: a record may be corrected after the pages were
-/// made, and neither verdict nor pictures follow from it. A page that report_html() or checklist_html() made;
-/// any other comes back as it is.
+/// made, and neither verdict nor pictures follow from it. A page that report_html(), checklist_html() or
+/// behind_html() made; any other comes back as it is.
 [[nodiscard]] std::string page_renamed(std::string page, const std::string& title, const TabletWords& tablet);
 
 /// The page with other words on the wedges, likewise: they may be corrected, or left out of a package, after

@@ -5,6 +5,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "archive/report.h"
+
 namespace dubsar {
 namespace {
 
@@ -23,6 +25,12 @@ TEST(BehindPage, SaysWhatWasChangedAndWhenAndWhatToDoAndNoVerdict) {
     EXPECT_THAT(page, Not(HasSubstr(word)));
   }
   EXPECT_THAT(page, ::testing::EndsWith("</html>\n"));
+}
+
+TEST(BehindPage, GoesByTheNumberThatTheTabletIsGivenSince) {
+  BehindPage page = kPage;
+  page.title = "K. 1";
+  EXPECT_EQ(page_renamed(behind_html(kPage), "K. 1", {}), behind_html(page));
 }
 
 TEST(BehindPage, IsKnownByItsFirstBytesWhateverItIsAbout) {
