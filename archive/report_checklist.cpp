@@ -171,7 +171,7 @@ std::string checklist_section(const ReportInput& input) {
     html += dl_entry("Not placed yet",
                      listed(list.scans_unplaced) + ", stored, and in neither model nor verdict");
   }
-  if (list.worst_sigma_scan >= 0) {
+  if (list.worst_sigma_scan >= 0 && list.scans_registered > 1) {  // one alone lies where it lies
     html += dl_entry("Worst place", "scan " + std::to_string(list.worst_sigma_scan) + ", σ " +
                                         fixed(1000 * list.worst_sigma_mm, 1) + " µm");
   }

@@ -335,9 +335,13 @@ TEST_F(Report, NumbersThatAreNoneAreDashes) {
 
 TEST_F(Report, AScanThatWasHeldAgainstNoOtherHasNoResidual) {
   scans_.resize(1);
+  list_.worst_sigma_scan = 0;
   EXPECT_THAT(html(), HasSubstr("the median residual between scans is 21.3 µm"));
+  EXPECT_THAT(html(), HasSubstr("<dt>Worst place</dt>"));
   scans_[0].rms_mm = 0;
+  list_.scans_registered = 1;
   const std::string page = html();
+  EXPECT_THAT(page, Not(HasSubstr("<dt>Worst place</dt>")));
   EXPECT_THAT(page, Not(HasSubstr("the median residual")));
   EXPECT_THAT(page, HasSubstr("<td>registered</td><td>–</td>"));
 }
