@@ -117,7 +117,7 @@ std::vector<BagField> bag_fields(const PackageContent& content) {
                                 : "SIMULATED. " + content.simulated + " Here are ";
   description += kinds_of_things(content) + ". ";
   description += content.results().red_map.conclusive
-                     ? "The verdict is conclusive: what the scanner can reach is sampled densely enough."
+                     ? "The verdict is conclusive: " + conclusive_words(content.results().red_map)
                      : "The verdict is not conclusive: see data/report/report.html for what is missing.";
   std::string left_out;
   for (const PackagePart part : content.options.without) {

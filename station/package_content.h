@@ -97,6 +97,8 @@ struct PackageContent {
 /// Where inner edges end, and what a person has corrected.
 [[nodiscard]] std::string analysis_note(const WedgeFile& wedges);
 
+/// What a conclusive verdict says, and how much of the tablet it says nothing of.
+[[nodiscard]] std::string conclusive_words(const RedMap& map);
 /// How the verdict is signed, and whether that holds: "signed by A. Reader, 2026-01-02T03:04:05Z: conclusive;
 /// it holds", or that nobody signed.
 [[nodiscard]] std::string signature_words(const PackageContent& content);

@@ -152,11 +152,9 @@ Status add_readme(PackageContent& content) {
           program_name(), content.when),
       0);
   text += "\n";
-  text +=
-      folded(conclusive ? "The verdict is CONCLUSIVE: every part of the tablet that the scanner can reach "
-                          "is sampled densely enough."
-                        : "The verdict is NOT CONCLUSIVE: report/report.html says what is missing.",
-             0);
+  text += folded(conclusive ? "The verdict is CONCLUSIVE: " + conclusive_words(content.results().red_map)
+                            : "The verdict is NOT CONCLUSIVE: report/report.html says what is missing.",
+                 0);
   text += folded("Signature: " + signature_words(content) + ".", 0);
   if (const std::string out = taken_out_in_words(content.facts.scans); !out.empty()) {
     text += folded("Taken out by the operator, and in neither model nor verdict: " + out + ".", 0);
