@@ -132,7 +132,7 @@ Result<StagedFolder> StagedFolder::begin(const fs::path& wanted, bool replace) {
         ::close(lock);
         return storage(staged, "cannot clear what was left there", error);
       }
-      return StagedFolder(std::move(target), staged, lock);
+      return StagedFolder(std::move(target), staged, lock, replace);
     }
     ::close(lock);
   }
@@ -143,7 +143,8 @@ Result<StagedFolder> StagedFolder::begin(const fs::path& wanted, bool replace) {
 StagedFolder::StagedFolder(StagedFolder&& other) noexcept
     : target_(std::move(other.target_)),
       path_(std::exchange(other.path_, {})),
-      lock_(std::exchange(other.lock_, -1)) {}
+      lock_(std::exchange(other.lock_, -1)),
+      replaces_(other.replaces_) {}
 
 StagedFolder::~StagedFolder() {
   if (!path_.empty()) {
@@ -170,10 +171,14 @@ Status StagedFolder::publish() {
   if (const Status synced = sync_folder(path_); !synced) {
     return synced;
   }
-  // rename() replaces an empty folder by itself.
-  if (is_free(target_)) {
+  // rename() replaces an empty folder by itself, and nothing else: not what came there meanwhile.
+  if (!replaces_ || is_free(target_)) {
     if (::rename(path_.c_str(), target_.c_str()) != 0) {
-      return storage(target_, "cannot put the folder in its place", errno);
+      const int why = errno;
+      return why == ENOTEMPTY || why == EEXIST || why == ENOTDIR
+                 ? fail(ErrorKind::kUsage, "somebody has put something there since this was begun",
+                        target_.string(), "choose another folder, or take that out and try again")
+                 : storage(target_, "cannot put the folder in its place", why);
     }
     path_.clear();
     return sync_folder(target_.parent_path());

@@ -32,17 +32,19 @@ class StagedFolder {
   /// Where to write.
   [[nodiscard]] const std::filesystem::path& path() const { return path_; }
 
-  /// Syncs every folder and takes the place of the target, in one step where something lies there (the old
-  /// one is removed only after that). The files must have been synced by whoever wrote them.
+  /// Syncs every folder and takes the place of the target, in one step where something lies there that may be
+  /// replaced (the old one is removed only after that). The files must have been synced by whoever wrote
+  /// them. kUsage where nothing was to be replaced and somebody has put something there meanwhile: it stays.
   [[nodiscard]] Status publish();
 
  private:
-  StagedFolder(std::filesystem::path target, std::filesystem::path path, int lock)
-      : target_(std::move(target)), path_(std::move(path)), lock_(lock) {}
+  StagedFolder(std::filesystem::path target, std::filesystem::path path, int lock, bool replaces)
+      : target_(std::move(target)), path_(std::move(path)), lock_(lock), replaces_(replaces) {}
 
   std::filesystem::path target_;
   std::filesystem::path path_;  ///< empty once there is nothing to take away
   int lock_ = -1;
+  bool replaces_ = false;
 };
 
 }  // namespace dubsar

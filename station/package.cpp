@@ -315,7 +315,12 @@ Result<Package> write_package(const fs::path& session, const fs::path& to, const
       return std::unexpected(allowed.error());
     }
   }
-  const Result<KeptFiles> kept = keep_others(to, earlier, job);
+  // Somebody may have put something there meanwhile.
+  if (const Status ours = check_is_package(to); !ours) {
+    return std::unexpected(ours.error());
+  }
+  const Result<KeptFiles> kept =
+      options.replace ? keep_others(to, earlier, job) : Result<KeptFiles>(KeptFiles{});
   if (!kept) {
     return std::unexpected(kept.error());
   }

@@ -141,6 +141,26 @@ TEST(StagedFolder, ReplacesOnlyWhenTold) {
   EXPECT_EQ(std::distance(fs::directory_iterator(folder.path()), fs::directory_iterator()), 1);
 }
 
+/// A package takes minutes: who copies photographs to its place meanwhile must not lose them.
+TEST(StagedFolder, WhatCameToItsPlaceMeanwhileStays) {
+  const test::TemporaryFolder folder;
+  const fs::path target = folder.path() / "bag";
+  for (const fs::path& came : {target / "photograph", target}) {
+    {
+      auto staged = StagedFolder::begin(target, false);
+      ASSERT_TRUE(staged) << staged.error().line();
+      put(staged->path() / "new", "new");
+      put(came, "theirs");
+      const Status published = staged->publish();
+      ASSERT_FALSE(published) << came;
+      EXPECT_EQ(published.error().kind, ErrorKind::kUsage) << published.error().line();
+    }
+    EXPECT_EQ(text_of_file(came), "theirs");
+    EXPECT_EQ(std::distance(fs::directory_iterator(folder.path()), fs::directory_iterator()), 1);
+    fs::remove_all(target);
+  }
+}
+
 TEST(StagedFolder, IsRefusedAtTheTopOfADiskBeforeAnyWork) {
   for (const bool replace : {false, true}) {
     const auto staged = StagedFolder::begin("/proc/", replace);
