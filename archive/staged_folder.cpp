@@ -177,7 +177,7 @@ Status StagedFolder::publish() {
       const int why = errno;
       return why == ENOTEMPTY || why == EEXIST || why == ENOTDIR
                  ? fail(ErrorKind::kUsage, "somebody has put something there since this was begun",
-                        target_.string(), "choose another folder, or take that out and try again")
+                        target_.string(), "choose another folder, or remove it yourself")
                  : storage(target_, "cannot put the folder in its place", why);
     }
     path_.clear();

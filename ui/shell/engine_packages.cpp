@@ -16,6 +16,8 @@ constexpr EnginePhrase kPhrases[] = {
     {"bring it up to date with --update, choose another folder, or replace it with --force",
      "einen anderen Ordner wählen"},
     {"something lies there already", "dort liegt schon etwas"},
+    {"somebody has put something there since this was begun",
+     "jemand hat etwas dorthin gelegt, seit das begonnen wurde"},
     {"this is the top of a disk, and a folder cannot take its place",
      "das ist ein ganzer Datenträger, an dessen Stelle kein Ordner treten kann"},
     {"give a folder in it, such as ", "einen Ordner darin angeben, etwa "},
