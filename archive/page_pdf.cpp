@@ -180,14 +180,17 @@ class Setter {
     const auto head = broken(rows.front(), true);
     room_for(4 * height(head));
     put(head, true);
+    const double room = PdfSheet::kHeight - kMargin - kFoot - height(head) - 3;  // a page's
+    const auto most_lines = static_cast<std::size_t>(std::max(1.0, room / (kPdfLeading * kSize)));
     for (std::size_t r = 1; r < rows.size(); ++r) {
-      const auto cells = broken(rows[r], false);
-      const int page = sheet_.pages();
-      room_for(height(cells));
-      if (sheet_.pages() != page) {
-        put(head, true);  // again on the new page
+      for (const auto& cells : in_parts(broken(rows[r], false), most_lines)) {
+        const int page = sheet_.pages();
+        room_for(height(cells));
+        if (sheet_.pages() != page) {
+          put(head, true);  // again on the new page
+        }
+        put(cells, false);
       }
-      put(cells, false);
     }
     y_ -= kBody;
   }

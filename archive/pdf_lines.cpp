@@ -204,4 +204,23 @@ double height_of(const PdfLines& lines, double size) {
   return kPdfLeading * size * static_cast<double>(lines.size());
 }
 
+std::vector<std::vector<PdfLines>> in_parts(const std::vector<PdfLines>& cells, std::size_t most_lines) {
+  std::size_t lines = 1;
+  for (const PdfLines& cell : cells) {
+    lines = std::max(lines, cell.size());
+  }
+  const std::size_t step = std::max<std::size_t>(1, most_lines);
+  std::vector<std::vector<PdfLines>> parts;
+  for (std::size_t from = 0; from < lines; from += step) {
+    std::vector<PdfLines>& part = parts.emplace_back();
+    for (const PdfLines& cell : cells) {
+      const auto at = [&](std::size_t line) {
+        return cell.begin() + static_cast<std::ptrdiff_t>(std::min(line, cell.size()));
+      };
+      part.emplace_back(at(from), at(from + step));
+    }
+  }
+  return parts;
+}
+
 }  // namespace dubsar

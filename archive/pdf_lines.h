@@ -2,6 +2,7 @@
 // Copyright The Dubsar developers
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <string>
@@ -47,5 +48,10 @@ inline constexpr double kPdfOneLine = std::numeric_limits<double>::infinity();  
 void draw_lines(PdfSheet& sheet, const PdfLines& lines, double left, double top, double size, double grey);
 
 [[nodiscard]] double height_of(const PdfLines& lines, double size);
+
+/// The cells of a row of a table in parts of at most so many lines, one at least, for a row that is higher
+/// than a page.
+[[nodiscard]] std::vector<std::vector<PdfLines>> in_parts(const std::vector<PdfLines>& cells,
+                                                          std::size_t most_lines);
 
 }  // namespace dubsar
