@@ -57,7 +57,7 @@ struct RedRegion {
   double area_mm2 = 0;              ///< of the hole that the red border encloses, estimated
   RegionState state = RegionState::kRed;
   Excuse excuse = Excuse::kNone;
-  std::string reason;  ///< of the excuse
+  std::string reason;  ///< of the excuse; of a red one, why no view will clear it
 };
 
 /// A next placement, best first.

@@ -206,6 +206,10 @@ void give_up(std::span<const PlacedScan> scans, const SurfaceCover& cover, doubl
   }
   const double all_mm2 = red.slits_mm2 + area_of(slits, red);
   if (all_mm2 > options.speck_budget * surface_mm2) {
+    for (const std::uint32_t i : slits) {  // no view will be asked for: somebody has to know why
+      red.targets[i].reason =
+          "slit or pit of less than a wedge's size, one of more than may be passed over: " + why;
+    }
     return;
   }
   red.slits_mm2 = all_mm2;

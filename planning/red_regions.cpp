@@ -75,13 +75,13 @@ std::vector<std::vector<std::uint32_t>> parts_by_side(const RedTargets& red, std
   return out;
 }
 
-/// Why a red place stays red, where most of it gives no signal.
-std::string no_signal_of(const RedTargets& red, std::span<const std::uint32_t> group, double area_mm2) {
+/// Why a red place stays red, where no view will clear most of it.
+std::string why_red(const RedTargets& red, std::span<const std::uint32_t> group, double area_mm2) {
   double silent_mm2 = 0;
   const RedTarget* largest = nullptr;
   for (const std::uint32_t i : group) {
     const RedTarget& t = red.targets[i];
-    if (t.no_signal) {
+    if (!t.reason.empty()) {
       silent_mm2 += t.area_mm2;
       largest = largest == nullptr || t.area_mm2 > largest->area_mm2 ? &t : largest;
     }
@@ -124,7 +124,7 @@ RedRegion region_of(const RedTargets& red, std::span<const std::uint32_t> group,
   region.excuse = main.excuse;
   region.reason = main.reason;
   if (main.state == RegionState::kRed) {
-    region.reason = no_signal_of(red, group, region.area_mm2);
+    region.reason = why_red(red, group, region.area_mm2);
   }
   return region;
 }

@@ -36,7 +36,7 @@ struct RedTarget {
       perhaps;  ///< likewise, if their fields reach as far as is supposed of those of new views
   RegionState state = RegionState::kRed;
   Excuse excuse = Excuse::kNone;
-  std::string reason;
+  std::string reason;  ///< of the excuse; of a red one, why no view will clear it
   /// Where interpolation puts the missing surface, of targets that are unneeded for that.
   std::optional<Eigen::Vector3d> interpolated_mm;
 

@@ -16,7 +16,7 @@ class VainScans {
   /// The red map after each scan, what that scan was predicted to clear (nothing: it was not asked for), and
   /// what of that red it did clear. True when the last three that were asked for, together, cleared less than
   /// two fifths of what was predicted and made red smaller by less than a tenth of it (what one clears of a
-  /// cavity its border shows anew), and nine tenths of what is left are one place, or give no signal.
+  /// cavity its border shows anew), and nine tenths of what is left are one place, or no view clears it.
   [[nodiscard]] bool after(const RedMap& map, std::optional<double> predicted_mm2, double cleared_mm2);
 
  private:

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "planning/excuse.h"
+#include "planning/red_regions.h"
 #include "planning/surface_cover.h"
 #include "tests/planning/support/pebble.h"
 
@@ -83,6 +84,25 @@ TEST_F(Specks, SlitsHaveOneBudgetWhicheverRuleGivesThemUp) {
   };
   EXPECT_EQ(given_up(1600), 2) << "0.3 of 0.32 mm2";
   EXPECT_EQ(given_up(1000), 1) << "0.15 of 0.2 mm2, and not 0.3";
+}
+
+TEST_F(Specks, SlitsThatAreTooManySayWhyTheyStayRed) {
+  const SurfaceCover cover(session_.map.scans());
+  const auto reason_of_region = [&](double surface_mm2, float best_chance) {
+    RedTargets red;
+    red.cell_mm = kCellMm;
+    red.targets = {tried_twice({5, 0, 4.6}, 0.15)};
+    const std::vector<float> chances = {best_chance};
+    excuse_out_of_reach(session_.map.scans(), cover, chances, surface_mm2, {}, red);
+    const std::vector<RedRegion> regions =
+        red_regions(red, session_.map.scans(), model_surface(session_.map.scans()));
+    EXPECT_EQ(regions.size(), 1U);
+    EXPECT_EQ(regions[0].state, RegionState::kRed);
+    return regions[0].reason;
+  };
+  EXPECT_TRUE(
+      reason_of_region(500, 0.0F).starts_with("slit or pit of less than a wedge's size, one of more"));
+  EXPECT_EQ(reason_of_region(500, 1.0F), "") << "a view of it is to be had";
 }
 
 TEST_F(Specks, BesideClayThatNobodyHasSeenThereIsNone) {

@@ -173,6 +173,8 @@ constexpr EnginePhrase kRemarks[] = {
     {"speck: no view is expected to clear as much as one such speck",
      "Fleck: keine Ansicht brächte voraussichtlich so viel wie ein solcher Fleck"},
     {"slit or pit of less than a wedge's size: ", "Spalt oder Grube, kleiner als ein Keil: "},
+    {"slit or pit of less than a wedge's size, one of more than may be passed over: ",
+     "Spalt oder Grube, kleiner als ein Keil, eine von mehr, als übergangen werden dürfen: "},
     {"gives no signal, look at it: ", "gibt kein Signal, ansehen: "},
     {"gap of ", "Lücke von "},
     {" mm; its surroundings bend by ", " mm; ihre Umgebung weicht um "},
