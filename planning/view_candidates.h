@@ -27,8 +27,8 @@ struct ViewCandidate {
   std::optional<Placement> placement;  ///< none without a rig
   std::optional<HiddenHalf> hidden;    ///< what the support covers
   bool by_hand = false;                ///< the tablet has to be lifted
-  bool leans = false;                  ///< by hand: it has to be propped, on none of its sides
   std::string say;
+  bool leans = false;  ///< by hand: it has to be propped, on none of its sides
 };
 
 struct CandidateOptions {
