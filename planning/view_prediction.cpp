@@ -18,6 +18,26 @@ constexpr double kFarMm = 1.0e4;
 /// Slope beyond which a camera gets too little light back from a laser line.
 const double kFlattestCosine = std::cos(rad_from_deg(70.0));
 
+/// A scan that has returns in its first or last row was cut off there, or its field ends: it looked no
+/// farther along its motion.
+void end_at_rows(const RangeGrid& grid, Eigen::AlignedBox3d& field) {
+  const Eigen::Vector3d& motion = grid.view.motion_per_row_mm;
+  Eigen::Index axis = 0;
+  if (grid.rows < 1 || !(motion.cwiseAbs().maxCoeff(&axis) > 0)) {
+    return;
+  }
+  for (const int row : {0, grid.rows - 1}) {
+    const bool is_upper = (row > 0) == (motion[axis] > 0);
+    double& end_mm = is_upper ? field.max()[axis] : field.min()[axis];
+    for (int col = 0; col < grid.cols; ++col) {
+      if (grid.is_valid(row, col)) {
+        const auto at_mm = static_cast<double>(grid.point(grid.index(row, col))[axis]);
+        end_mm = is_upper ? std::min(end_mm, at_mm) : std::max(end_mm, at_mm);
+      }
+    }
+  }
+}
+
 double upper_tail(double z) {
   return 0.5 * std::erfc(z / std::sqrt(2.0));
 }
@@ -42,6 +62,7 @@ ScannerModel ScannerModel::that_took(const RangeGrid& grid, const Rig* rig, doub
   Eigen::AlignedBox3d field;
   if (rig != nullptr) {
     field = of(*rig, noise_mm).field_mm;
+    end_at_rows(grid, field);
   } else {
     for (std::size_t i = 0; i < grid.size(); ++i) {
       if (grid.valid[i] != 0) {

@@ -24,10 +24,10 @@ struct ScannerModel {
 
   [[nodiscard]] static ScannerModel of(const Rig& rig, double noise_mm);
   [[nodiscard]] static ScannerModel of(const RangeGrid& grid, double noise_mm);
-  /// As of(grid, noise_mm), within what that scan certainly looked over: the rig's field; where no rig is
-  /// known, what the grid's own returns span, nothing where there are none; either less the outermost three
-  /// spacings (nine in depth; without a rig at the far end alone), where samples may lack neighbours for no
-  /// other reason than that the field ends.
+  /// As of(grid, noise_mm), within what that scan certainly looked over: the rig's field, as far as its rows
+  /// went; where no rig is known, what the grid's own returns span, nothing where there are none; either less
+  /// the outermost three spacings (nine in depth; without a rig at the far end alone), where samples may lack
+  /// neighbours for no other reason than that the field ends.
   [[nodiscard]] static ScannerModel that_took(const RangeGrid& grid, const Rig* rig, double noise_mm);
 };
 

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <utility>
+#include <vector>
 
 #include "core/units.h"
 #include "planning/excuse.h"
@@ -228,6 +229,28 @@ TEST(VainLook, AScanLookedFromWhereItsOwnLaserStood) {
   targets[0].position_mm = targets[0].sample_mm = {0, 0, 5.5};
   note_tries(scans, &rig, noise_mm, model_surface(scans), targets);
   EXPECT_EQ(targets[0].tried.size(), 1U);
+}
+
+TEST(VainLook, AScanThatWasCutOffLookedNoFartherThanItsRows) {
+  Session session;
+  session.scan(turned(0, 0));
+  RangeGrid half = *session.grids.front();
+  half.rows = 50;  // its last one lies at y = -1.5 mm
+  const std::size_t kept = half.index(half.rows, 0);
+  for (std::vector<float>* values : {&half.x, &half.y, &half.z}) {
+    values->resize(kept);
+  }
+  half.valid.resize(kept);
+  const SampleFlags flags = flag_sparse(half);
+  const PlacedScan cut{0, &half, &flags, turned(0, 0), 0.0};
+  const Rig rig = turntable_rig();
+  const double noise_mm[] = {0.02};
+  std::vector<RedTarget> targets(2);
+  targets[0].position_mm = targets[0].sample_mm = {0, -4, 5};
+  targets[1].position_mm = targets[1].sample_mm = {0, 4, 5};
+  note_tries({&cut, 1}, &rig, noise_mm, model_surface(session.map.scans()), targets);
+  EXPECT_EQ(targets[0].tried.size(), 1U);
+  EXPECT_TRUE(targets[1].tried.empty());
 }
 
 /// Whether or not it looked so far: where no rig is known a new view is supposed to.
