@@ -278,6 +278,9 @@ std::vector<ViewCandidate> rig_candidates(const Rig& rig, const StageState& stat
           !drive.empty()) {
         candidate.say += (candidate.say.empty() ? "" : "; then ") + drive;
       }
+      if (candidate.say.empty()) {  // no motor, and nothing for hands to do
+        candidate.say = "leave the tablet as it lies";
+      }
       placement.hand_turn = rest.turn;
       candidate.placement = std::move(placement);
       out.push_back(std::move(candidate));

@@ -199,7 +199,7 @@ Result<RedMap> PlanningStage::red_map(const Rig* rig, JobContext& job) {
   }
   if (const std::optional<int> from = turns_go_from()) {
     for (NextView& view : result->map.next) {
-      if (!view.placement || view.placement->hand_turn) {
+      if (!view.placement || view.placement->hand_turn || !options.stage) {
         view.say = "from how it lay for scan " + std::to_string(*from) + ": " + view.say;
       }
     }

@@ -96,6 +96,17 @@ TEST(Leaning, NobodyPropsATabletForAScannerThatTilts) {
   EXPECT_EQ(leaning(), 0);
 }
 
+/// Where no motor moves, too, each view has words: a terminal shows nothing else.
+TEST(Leaning, WhatStaysAsItLiesIsSaid) {
+  const TopScan top;
+  const std::vector<ViewCandidate> all = rig_candidates(still_rig(), {}, top.placed, trenched_slab());
+  ASSERT_FALSE(all.empty());
+  for (const ViewCandidate& candidate : all) {
+    EXPECT_FALSE(candidate.say.empty());
+    EXPECT_EQ(candidate.say == "leave the tablet as it lies", !candidate.by_hand) << candidate.say;
+  }
+}
+
 TEST(Leaning, WhoProppedItAsAskedHasItSo) {
   const TopScan top;
   const ModelSurface surface = trenched_slab();
