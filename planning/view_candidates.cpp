@@ -41,7 +41,8 @@ Eigen::Matrix3d least_turn(const Eigen::Vector3d& from, const Eigen::Vector3d& t
                            const Eigen::Vector3d& spare) {
   if (from.dot(to) < -0.9) {
     // Turned over about an axis across both that lies as near to `spare` as can be.
-    const Eigen::Vector3d axis = (spare - to * to.dot(spare)).normalized();
+    const Eigen::Vector3d across = spare - to * to.dot(spare);
+    const Eigen::Vector3d axis = across.norm() > 1e-6 ? across.normalized() : to.unitOrthogonal();
     const Eigen::Matrix3d over = Eigen::AngleAxisd(kPi, axis).toRotationMatrix();
     const Eigen::Vector3d half = over * from;
     return Eigen::Quaterniond::FromTwoVectors(half, to).toRotationMatrix() * over;

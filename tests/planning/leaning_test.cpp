@@ -107,6 +107,21 @@ TEST(Leaning, WhatStaysAsItLiesIsSaid) {
   }
 }
 
+/// What is turned over then stands upside down, and there is no telling which way round.
+TEST(Leaning, NoTurnMirrorsATabletThatStandsOnItsBottomEdge) {
+  TopScan top;
+  top.placed.model_from_scanner.rotation << 1, 0, 0, 0, 0, 1, 0, -1, 0;  // looks at the top edge
+  int turned = 0;
+  for (const ViewCandidate& candidate : rig_candidates(still_rig(), {}, top.placed, trenched_slab())) {
+    EXPECT_TRUE(candidate.model_from_scanner.is_rigid(1e-9)) << candidate.say;
+    if (candidate.by_hand) {
+      EXPECT_TRUE(candidate.placement->hand_turn->is_rigid(1e-9)) << candidate.say;
+      ++turned;
+    }
+  }
+  EXPECT_GT(turned, 100);
+}
+
 TEST(Leaning, WhoProppedItAsAskedHasItSo) {
   const TopScan top;
   const ModelSurface surface = trenched_slab();
