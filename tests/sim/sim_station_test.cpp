@@ -6,6 +6,7 @@
 
 #include <Eigen/Geometry>
 #include <cmath>
+#include <optional>
 
 #include "core/units.h"
 #include "tests/sim/scenes.h"
@@ -83,6 +84,22 @@ TEST(SimStation, APushedTabletLiesWhereItWasAskedToButForAHandsError) {
         << "the scanner looks beside";
   }
   EXPECT_GT(as_a_hand_does, 15) << "no hand is that exact";
+}
+
+/// What stands higher than the scanner's depth is lowered: the scanner looks above its middle from then on.
+TEST(SimStation, ALoweredTabletIsLookedAtAboveItsMiddleUntilItIsLaidAgain) {
+  SimStation station(rough_tablet(), coarse());
+  RigidTransform lowered;
+  lowered.translation_mm.z() = -12;
+  const RigidTransform foretold = station.nominal_after({0, 0, lowered});
+  ASSERT_TRUE(station.move({0, 0, lowered}));
+  const auto looks_at_mm = [&] { return station.nominal().tablet_from_scanner.translation_mm; };
+  EXPECT_NEAR(looks_at_mm().z(), 12, 1e-9);
+  EXPECT_LT((foretold.translation_mm - looks_at_mm()).norm(), 1e-9);
+  ASSERT_TRUE(station.move({1.0, 0, std::nullopt}));
+  EXPECT_NEAR(looks_at_mm().z(), 12, 1e-9) << "the turntable does not raise it";
+  ASSERT_TRUE(station.move({0, 0, RigidTransform{}}));
+  EXPECT_NEAR(looks_at_mm().z(), 0, 1e-9);
 }
 
 TEST(SimStation, MotorsAreNearlyExactWithinAPlacement) {
