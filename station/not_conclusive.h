@@ -19,4 +19,13 @@ namespace dubsar {
                                  : fmt::format("not conclusive: about {:.1f} mm2 are still red", red_mm2);
 }
 
+/// What a conclusive verdict does not speak of, to be put behind it; nothing where all was in reach.
+[[nodiscard]] inline std::string out_of_reach(double unreachable_mm2) {
+  constexpr double kLeastToldMm2 = 0.05;
+  return unreachable_mm2 < kLeastToldMm2
+             ? std::string()
+             : fmt::format("; about {:.1f} mm2 are out of reach and not recorded: the checklist says why",
+                           unreachable_mm2);
+}
+
 }  // namespace dubsar

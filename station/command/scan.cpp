@@ -57,6 +57,15 @@ double red_area_mm2(const RedMap& map) {
   return area;
 }
 
+double unreachable_mm2(const RedMap& map) {
+  double area = 0;
+  for (const RedRegion& region : map.regions) {
+    const bool is_hidden = region.state == RegionState::kExcused && region.excuse == Excuse::kUnreachable;
+    area += is_hidden ? region.area_mm2 : 0.0;
+  }
+  return area;
+}
+
 std::ptrdiff_t red_regions(const RedMap& map) {
   return std::count_if(map.regions.begin(), map.regions.end(),
                        [](const RedRegion& region) { return region.state == RegionState::kRed; });
@@ -118,7 +127,8 @@ std::string verdict(const EngineResult& result) {
   });
   const std::string scans = counted(static_cast<long long>(result.poses.size()), "scan", "scans");
   if (result.red_map.conclusive) {
-    return fmt::format("conclusive after {}, {} registered", scans, registered);
+    return fmt::format("conclusive after {}, {} registered{}", scans, registered,
+                       out_of_reach(unreachable_mm2(result.red_map)));
   }
   return fmt::format("{} after {}, {} registered", not_conclusive(red_area_mm2(result.red_map)), scans,
                      registered);

@@ -58,6 +58,9 @@ TEST(NotConclusive, SaysHowMuchIsRedButNeverThatNothingIs) {
   EXPECT_EQ(not_conclusive(12.34), "not conclusive: about 12.3 mm2 are still red");
   EXPECT_EQ(not_conclusive(0.03), "not conclusive: less than 0.1 mm2 are still red");
   EXPECT_EQ(not_conclusive(0), "not conclusive: no scan is registered, nothing is known of the clay");
+  EXPECT_EQ(out_of_reach(1900.04),
+            "; about 1900.0 mm2 are out of reach and not recorded: the checklist says why");
+  EXPECT_EQ(out_of_reach(0.01), "");
 }
 
 TEST_F(HalfScanned, IsSignedAsIncompleteOnlyAndWithTheReason) {
