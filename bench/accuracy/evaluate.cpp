@@ -198,8 +198,7 @@ int main(int argc, char** argv) {
   poses->add_option("scans", second, "their folder, or the session")->required();
   poses->add_option("--truth", truth);
   poses->add_option("--conf", conf);
-  const CLI::IsMember is_unit(
-      std::vector<std::string>(dubsar::kLengthUnits.begin(), dubsar::kLengthUnits.end()));
+  const CLI::IsMember is_unit = dubsar::bench::one_of(dubsar::kLengthUnits);
   poses->add_option("--unit", unit, "of the scans and the .conf")->check(is_unit);
   poses->add_option("--gauge-out", gauge);
   CLI::App* mesh = app.add_subcommand("mesh", "A mesh against a reference mesh");

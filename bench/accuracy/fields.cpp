@@ -197,7 +197,7 @@ int main(int argc, char** argv) {
   Options options;
   CLI::App app{"The surface fields of the wedge analysis against the truth of simulated tablets"};
   app.add_option("--mesh", options.mesh, "a mesh instead of a simulated tablet");
-  app.add_option("--unit", options.unit, "of the mesh: m, mm, um");
+  app.add_option("--unit", options.unit, "of the mesh")->check(dubsar::bench::one_of(kLengthUnits));
   app.add_option("--truth", options.truth, "its truth.json");
   app.add_option("--seed", options.seed, "of the simulated tablet; with --mesh: the one that was scanned")
       ->capture_default_str();

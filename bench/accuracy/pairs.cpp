@@ -38,7 +38,7 @@ int main(int argc, char** argv) {
       "--simulated", simulated,
       "instead: so many simulated tablets of each kind, and whether covariances are what they claim");
   app.add_option("--conf", conf, "published poses, in the folder");
-  app.add_option("--unit", unit, "of the scans and the .conf: m, mm or um");
+  app.add_option("--unit", unit, "of the scans and the .conf")->check(bench::one_of(kLengthUnits));
   app.add_option("--least-overlap", least_overlap, "of a pair, over the smaller scan");
   app.add_option("--starts", starts, "of each class, for each pair");
   app.add_option("--seed", seed);

@@ -174,7 +174,7 @@ void print(const PinArguments& arguments, const Sums& sums) {
 int main(int argc, char** argv) {
   CLI::App app{"pins in scans of simulated tablets against the truth"};
   PinArguments arguments;
-  app.add_option("--kind", arguments.kind, "text, blank, worn, tiny or symmetric");
+  app.add_option("--kind", arguments.kind, "of the tablets")->check(bench::one_of(bench::kTabletKinds));
   app.add_option("--first", arguments.first_seed, "first seed");
   app.add_option("--tablets", arguments.tablets, "how many");
   app.add_option("--views", arguments.views, "scans of each");

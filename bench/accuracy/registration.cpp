@@ -280,8 +280,8 @@ void run(const Arguments& arguments, std::uint64_t seed, Sums& sums) {
 int main(int argc, char** argv) {
   CLI::App app{"registration of simulated tablets against the truth"};
   Arguments arguments;
-  app.add_option("--kind", arguments.kind, "text, blank, worn, tiny or symmetric");
-  app.add_option("--pins", arguments.pins, "none, labelled or unlabelled");
+  app.add_option("--kind", arguments.kind, "of the tablets")->check(bench::one_of(bench::kTabletKinds));
+  app.add_option("--pins", arguments.pins)->check(CLI::IsMember({"none", "labelled", "unlabelled"}));
   app.add_option("--first", arguments.first_seed, "first seed");
   app.add_option("--tablets", arguments.tablets, "how many");
   app.add_option("--views", arguments.views, "scans of each");

@@ -7,7 +7,10 @@
 #include <cstdint>
 #include <cstdio>
 #include <optional>
+#include <span>
 #include <string>
+#include <string_view>
+#include <vector>
 
 /// How every bench reads its words.
 namespace dubsar::bench {
@@ -38,6 +41,11 @@ inline void refuse_what_is_no_number(CLI::App& app) {
   for (CLI::App* verb : app.get_subcommands({})) {
     refuse_what_is_no_number(*verb);
   }
+}
+
+/// For a word that is one of these: any other would be taken for the first of them, or for none.
+[[nodiscard]] inline CLI::IsMember one_of(std::span<const std::string_view> words) {
+  return CLI::IsMember(std::vector<std::string>(words.begin(), words.end()));
 }
 
 /// Reads the words. A status where the bench is to end with it at once: 0 when help was asked for, and 2,

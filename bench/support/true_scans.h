@@ -2,6 +2,7 @@
 // Copyright The Dubsar developers
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -46,8 +47,12 @@ struct TrueScanOptions {
 /// Is shown each scan as it is made, with the scene that it was made of (tablet frame).
 using ScanVisitor = std::function<void(const sim::Scene& scene, const TrueScan& scan)>;
 
-/// A tablet of random size and wear: "text" (written, damaged as most are), "blank" (no text), "worn", "tiny"
-/// (20 mm), "symmetric" (blank, square and even), "ruled" (blank, even and longer than wide: to be ruled).
+inline constexpr std::array<std::string_view, 6> kTabletKinds{"text", "blank",     "worn",
+                                                              "tiny", "symmetric", "ruled"};
+
+/// A tablet of random size and wear, of one of kTabletKinds: "text" (written, damaged as most are), "blank"
+/// (no text), "worn", "tiny" (20 mm), "symmetric" (blank, square and even), "ruled" (blank, even and longer
+/// than wide: to be ruled).
 [[nodiscard]] sim::TabletOptions random_tablet(std::uint64_t seed, std::string_view kind, double spacing_mm);
 
 /// Scans it from free views with nothing told of the poses; exits the program when it cannot. Clicked tips
