@@ -4,7 +4,9 @@
 
 #include <array>
 #include <charconv>
+#include <cstddef>
 #include <string>
+#include <string_view>
 
 /// Numbers as text with a point, whatever locale a host program has set: printf, std::to_string of a double
 /// and strtod follow LC_NUMERIC, and a stage that is told to go to "1,5" goes to 1.
@@ -31,6 +33,11 @@ namespace dubsar {
   const auto [end, error] =
       std::to_chars(text.data(), text.data() + text.size(), value, std::chars_format::general, digits);
   return {text.data(), end};
+}
+
+/// "1 wedge", "3 wedges", "0 wedges": for people.
+[[nodiscard]] inline std::string counted(std::size_t count, std::string_view one) {
+  return std::to_string(count).append(" ").append(one).append(count == 1 ? "" : "s");
 }
 
 /// Appends text that reads back to the same float even when it is read as a double first: nine digits lie

@@ -8,6 +8,7 @@
 #include <set>
 
 #include "core/log.h"
+#include "core/number_text.h"
 #include "formats/wedges_json.h"
 #include "station/same_tablet.h"
 #include "station/wedges_beside.h"
@@ -72,8 +73,10 @@ std::optional<std::string> few_found_again(const EarlierWedges& earlier, const W
   if (2 * now.found_again >= most) {
     return std::nullopt;
   }
-  return fmt::format("of {} wedges that were known before, {} lie where they lay: {}", earlier.wedges.size(),
-                     now.found_again,
+  return fmt::format("of {} that {} known before, {} where {}: {}", counted(earlier.wedges.size(), "wedge"),
+                     earlier.wedges.size() == 1 ? "was" : "were",
+                     now.found_again == 1 ? "1 lies" : fmt::format("{} lie", now.found_again),
+                     now.found_again == 1 ? "it lay" : "they lay",
                      now.forgot_earlier
                          ? "they are taken for another tablet's, and all ids are given anew"
                          : "the others have new ids; was the mesh moved, or is it another tablet's?");

@@ -136,8 +136,10 @@ Result<EngineResult> Engine::Impl::run(JobContext& job) {
     step = stored_count > resumed_count ? step_to(result.red_map) : std::nullopt;
   }
   if (drives && has_all_scans() && !result.red_map.conclusive) {
-    emit(Notice{fmt::format("{} scans are there, as many as were to be taken; --max-scans allows more",
-                            stored_count)});
+    emit(Notice{stored_count == 1
+                    ? "1 scan is there, as many as were to be taken; --max-scans allows more"
+                    : fmt::format("{} scans are there, as many as were to be taken; --max-scans allows more",
+                                  stored_count)});
   }
   while (!close_commands()) {
     {

@@ -10,6 +10,7 @@
 #include "analysis/wedges.h"
 #include "archive/wedge_drawing.h"
 #include "core/log.h"
+#include "core/number_text.h"
 #include "formats/atomic_file.h"
 #include "formats/corrections_json.h"
 #include "formats/json_node.h"
@@ -27,6 +28,11 @@ namespace dubsar {
 namespace fs = std::filesystem;
 
 namespace {
+
+/// "1 wedge was", "3 wedges were".
+std::string have_been(std::size_t count, std::string_view one) {
+  return counted(count, one) + (count == 1 ? " was" : " were");
+}
 
 constexpr const char* kDocument = "wedges";
 constexpr const char* kWedges = "analysis/wedges.json";
@@ -198,8 +204,8 @@ std::string correction_sentence(const WedgeFile& file) {
     return {};
   }
   const std::size_t made = file.corrections - std::min(file.corrections, file.lost.size());
-  const std::string all = fmt::format("A person has corrected what was found: {} correction{} {} made", made,
-                                      made == 1 ? "" : "s", made == 1 ? "was" : "were");
+  const std::string all =
+      fmt::format("A person has corrected what was found: {} made", have_been(made, "correction"));
   return file.lost.empty() ? all + "." : fmt::format("{}, and {} more could not be.", all, file.lost.size());
 }
 
@@ -219,11 +225,11 @@ SessionWedges counts_of(const WedgeFile& file, fs::path json) {
 std::string wedge_sentence(const SessionWedges& wedges, const std::string& where) {
   std::string sentence =
       wedges.count == 0
-          ? fmt::format("No wedges were found; {} hollows were looked at.", wedges.rejected)
+          ? fmt::format("No wedges were found; {} looked at.", have_been(wedges.rejected, "hollow"))
           : fmt::format(
-                "{} wedges were measured, {} hollows were rejected: {} has every angle, the drawings "
+                "{} measured, {} rejected: {} has every angle, the drawings "
                 "beside it every wedge. Wedge measurement was tested on simulated tablets only.",
-                wedges.count, wedges.rejected, where);
+                have_been(wedges.count, "wedge"), have_been(wedges.rejected, "hollow"), where);
   if (!wedges.by_hand.empty()) {
     sentence += " " + wedges.by_hand;
   }

@@ -15,6 +15,7 @@
 #include "analysis/field_colours.h"
 #include "archive/wedge_drawing.h"
 #include "core/log.h"
+#include "core/number_text.h"
 #include "core/stage_times.h"
 #include "core/units.h"
 #include "formats/file_label_reader.h"
@@ -148,8 +149,8 @@ Result<int> tell_done(const AnalyzeArguments& arguments, CommandContext& context
     CommandContext::print(json);
   } else {
     finish_progress();
-    std::printf("%s: %zu wedges, done before from this mesh; --again does it anew\n", arguments.out.c_str(),
-                file->wedges.size());
+    std::printf("%s: %s, done before from this mesh; --again does it anew\n", arguments.out.c_str(),
+                counted(file->wedges.size(), "wedge").c_str());
   }
   return 0;
 }
@@ -160,12 +161,12 @@ void tell(const AnalyzeArguments& arguments, const WedgeFile& file, double took_
     return;
   }
   finish_progress();
+  const std::string hollows = counted(file.rejected.size(), "hollow");
   if (file.wedges.empty()) {
-    std::printf("%s: no wedges (%zu hollows looked at), %.1f s\n", arguments.out.c_str(),
-                file.rejected.size(), took_s);
+    std::printf("%s: no wedges (%s looked at), %.1f s\n", arguments.out.c_str(), hollows.c_str(), took_s);
   } else {
-    std::printf("%s: %zu wedges, %zu hollows rejected, %.1f s\n", arguments.out.c_str(), file.wedges.size(),
-                file.rejected.size(), took_s);
+    std::printf("%s: %s, %s rejected, %.1f s\n", arguments.out.c_str(),
+                counted(file.wedges.size(), "wedge").c_str(), hollows.c_str(), took_s);
   }
 }
 

@@ -17,6 +17,7 @@
 #include "acquisition/device_uri.h"
 #include "archive/html.h"
 #include "core/log.h"
+#include "core/number_text.h"
 #include "core/units.h"
 #include "formats/pins_json.h"
 #include "formats/poses_json.h"
@@ -95,8 +96,8 @@ class Narrator {
         log_info(fmt::format("scan {} cleared about {:.1f} mm2, {:.1f} were predicted", gain->scan,
                              gain->actual_mm2, *gain->predicted_mm2));
       }
-      log_info(fmt::format("red: about {:.1f} mm2 in {} regions", red_area_mm2(changed->red_map),
-                           red_regions(changed->red_map)));
+      log_info(fmt::format("red: about {:.1f} mm2 in {}", red_area_mm2(changed->red_map),
+                           counted(static_cast<std::size_t>(red_regions(changed->red_map)), "region")));
       for (const GroupApart& group : changed->red_map.apart) {
         if (told_.insert(group.say).second) {
           log_warning(group.say);

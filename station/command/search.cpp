@@ -9,6 +9,7 @@
 #include <memory>
 
 #include "core/log.h"
+#include "core/number_text.h"
 #include "station/collection.h"
 #include "station/command/command.h"
 #include "station/command/option_checks.h"
@@ -104,11 +105,11 @@ Result<int> search(const SearchArguments& arguments, CommandContext& context) {
     }
   } else {
     if (like->wedges.size() < kFewestWedges) {
-      return fail(
-          ErrorKind::kUsage,
-          fmt::format("it has {} wedges to search by, and tablets are compared from {} on",
-                      like->wedges.empty() ? "no" : std::to_string(like->wedges.size()), kFewestWedges),
-          arguments.like, "choose another tablet, or search by one of its wedges with --wedge");
+      return fail(ErrorKind::kUsage,
+                  fmt::format("it has {} to search by, and tablets are compared from {} on",
+                              like->wedges.empty() ? "no wedges" : counted(like->wedges.size(), "wedge"),
+                              kFewestWedges),
+                  arguments.like, "choose another tablet, or search by one of its wedges with --wedge");
     }
     json["tablets"] = nlohmann::ordered_json::array();
     for (const SimilarTablet& s : collection->similar_tablets(*like, count)) {

@@ -25,6 +25,12 @@ std::string short_by_printf(double value, int digits) {
   return text;
 }
 
+TEST(NumberText, OneIsCountedAsOne) {
+  EXPECT_EQ(counted(0, "wedge"), "0 wedges");
+  EXPECT_EQ(counted(1, "wedge"), "1 wedge");
+  EXPECT_EQ(counted(12, "wedge"), "12 wedges");
+}
+
 TEST(NumberText, IsWhatPrintfWrites) {
   for (const double value : {0.0, -0.0, 0.5, 1.5, 2.5, -0.04, 0.125, 1e-9, 99.995, 123456789.0, -1e22,
                              std::numeric_limits<double>::max(), std::numeric_limits<double>::infinity()}) {

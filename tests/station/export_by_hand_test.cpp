@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "build_paths.h"
+#include "core/number_text.h"
 #include "formats/corrections_json.h"
 #include "formats/mesh_io.h"
 #include "formats/selections_json.h"
@@ -166,8 +167,9 @@ TEST_F(ExportByHand, SelectionsKeepTheirMeshWhereASignedOneTakesItsPlace) {
   // What is signed is of one surface: so many wedges as the report says, in the session and in its package.
   const auto wedges = nlohmann::json::parse(bytes_of(session_ / "analysis/wedges.json"));
   const std::string count = wedges["wedges"].empty()
-                                ? "No wedges were found; " + std::to_string(wedges["rejected"].size())
-                                : std::to_string(wedges["wedges"].size()) + " wedges were measured";
+                                ? "No wedges were found; " + counted(wedges["rejected"].size(), "hollow")
+                                : counted(wedges["wedges"].size(), "wedge") +
+                                      (wedges["wedges"].size() == 1 ? " was measured" : " were measured");
   EXPECT_THAT(bytes_of(session_ / "export/report.html"), HasSubstr(count));
   const Outcome done = pack();
   ASSERT_EQ(done.status, 0) << done.err;

@@ -15,6 +15,7 @@
 #include "station/results.h"
 #include "station/selected_mesh.h"
 #include "station/session_pages.h"
+#include "station/session_wedges.h"
 #include "tests/support/raster_mesh.h"
 #include "tests/support/temporary_folder.h"
 
@@ -23,6 +24,18 @@ namespace {
 
 using ::testing::HasSubstr;
 using ::testing::Not;
+
+TEST(WedgeSentence, CountsOneAsOne) {
+  SessionWedges wedges;
+  wedges.count = 1;
+  wedges.rejected = 1;
+  EXPECT_THAT(wedge_sentence(wedges), HasSubstr("1 wedge was measured, 1 hollow was rejected: "));
+  wedges.count = 2;
+  wedges.rejected = 0;
+  EXPECT_THAT(wedge_sentence(wedges), HasSubstr("2 wedges were measured, 0 hollows were rejected: "));
+  wedges.count = 0;
+  EXPECT_THAT(wedge_sentence(wedges), HasSubstr("No wedges were found; 0 hollows were looked at."));
+}
 
 TEST(KeptSurface, ALostDrawingIsOfTheWedgesAsTheyAre) {
   const test::TemporaryFolder folder;

@@ -10,6 +10,7 @@
 #include <random>
 
 #include "acquisition/session_store.h"
+#include "core/number_text.h"
 #include "core/shell_word.h"
 #include "formats/corrections_json.h"
 #include "formats/self_checked.h"
@@ -206,8 +207,9 @@ TEST_F(Verify, PagesAndWedgesThatAreLostTogetherAreMadeOfEachOther) {
     const auto wedges = nlohmann::json::parse(bytes_of(session_ / "analysis/wedges.json"));
     EXPECT_THAT(bytes_of(session_ / "export/report.html"),
                 HasSubstr(wedges["wedges"].empty()
-                              ? "No wedges were found; " + std::to_string(wedges["rejected"].size())
-                              : std::to_string(wedges["wedges"].size()) + " wedges were measured"));
+                              ? "No wedges were found; " + counted(wedges["rejected"].size(), "hollow")
+                              : counted(wedges["wedges"].size(), "wedge") +
+                                    (wedges["wedges"].size() == 1 ? " was measured" : " were measured")));
     gone.at_mm.front().x() += 1;
     ASSERT_TRUE(write_corrections(session_ / "analysis/wedges.corrections.json", {"model.ply", {gone}}));
   }

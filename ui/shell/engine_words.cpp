@@ -194,6 +194,8 @@ constexpr EnginePhrase kPhrases[] = {
     {"the pins of scan ", "die Nadeln von Scan "},
     {" are labelled", " sind benannt"},
     {"there is no scan to undo", "es gibt keinen Scan zurückzunehmen"},
+    {" scan is there, as many as were to be taken; --max-scans allows more",
+     " Scan ist da; mehr waren nicht zu machen"},
     {" scans are there, as many as were to be taken; --max-scans allows more",
      " Scans sind da, so viele, wie zu machen waren"},
     {"the half scan is kept, rows: ", "der halbe Scan ist aufgehoben, Zeilen: "},
