@@ -18,6 +18,10 @@ constexpr double kStepMm = 0.05;
 constexpr double kMostLeanDeg = 5;
 /// A gap between lines holds at most this share of what the fuller parts on both sides hold.
 constexpr double kGap = 0.45;
+/// What stands above a gap is a line when it holds this share of what the line below holds, or more than one
+/// wedge: a heading of one sign is a line too, a stray hollow is none.
+constexpr double kLineShare = 0.25;
+constexpr double kMoreThanOne = 1.5;
 
 /// How many members cover each height, with the ends of each drawn in: wedges of neighbouring lines touch.
 struct Profile {
@@ -94,7 +98,8 @@ std::vector<double> gaps(const Profile& profile, double typical_height) {
     if (count[i] > crest && valley > kGap * crest) {
       crest = count[i];
       valley = 1e30;
-    } else if (crest > 0 && valley <= kGap * crest && valley <= kGap * count[i] && count[i] >= 0.25 * crest) {
+    } else if (crest > 0 && valley <= kGap * crest && valley <= kGap * count[i] &&
+               count[i] >= std::min(kLineShare * crest, kMoreThanOne)) {
       cuts.push_back(profile.from + kStepMm * 0.5 * static_cast<double>(valley_from + valley_to));
       crest = count[i];
       valley = 1e30;

@@ -24,8 +24,8 @@ namespace dubsar {
 /// larger. 3: faces are fitted away from creases and rims. 4: bowls and cones are none, sigmas
 /// follow what is missing of a wedge, each body of a mesh is measured alone. 5: depths are below the side
 /// that a wedge is impressed in, sigmas follow how round its faces are and how far the surface turns above
-/// it.
-inline constexpr int kWedgeMethod = 5;
+/// it. 6: a line of one sign is a line above full ones too.
+inline constexpr int kWedgeMethod = 6;
 
 struct WedgeOptions {
   ExitDefinition exits = ExitDefinition::kSurface;

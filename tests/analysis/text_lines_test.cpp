@@ -4,6 +4,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+
 #include "core/random.h"
 
 namespace dubsar {
@@ -36,6 +39,39 @@ TEST(TextLines, SortsLeaningLinesAndOrdersThem) {
     EXPECT_EQ(members[i].line, truth[i]);
     EXPECT_EQ(members[i].order, 1 + static_cast<int>(members[i].along / 1.5 + 0.5));
   }
+}
+
+/// Of `lines` full lines, 24 wedges that overlap by threes in each, one has three alone.
+std::vector<LineMember> with_a_short_line(int lines, int which) {
+  std::vector<LineMember> members;
+  for (int line = 0; line < lines; ++line) {
+    for (int k = 0; k < (line == which ? 3 : 24); ++k) {
+      LineMember m;
+      m.along = 1.5 * k;
+      m.low = -4.5 * line + 0.3 * (k % 3);
+      m.high = m.low + 3.0;
+      members.push_back(m);
+    }
+  }
+  return members;
+}
+
+TEST(TextLines, OneOfASingleSignIsALineWhereverItStands) {
+  for (int which = 0; which < 6; ++which) {
+    std::vector<LineMember> members = with_a_short_line(6, which);
+    find_lines(&members);
+    for (const LineMember& m : members) {
+      const int line = 1 + static_cast<int>(-std::floor(m.low / 4.5));
+      EXPECT_EQ(m.line, line) << "line " << which << " is short";
+    }
+  }
+}
+
+TEST(TextLines, AStrayHollowAboveALineIsNoLine) {
+  std::vector<LineMember> members = with_a_short_line(4, 3);
+  members.push_back({.along = 20, .low = 4.2, .high = 5.2});
+  find_lines(&members);
+  EXPECT_EQ(std::ranges::max(members, {}, &LineMember::line).line, 4);
 }
 
 TEST(TextLines, OneLineNoneAndOneWedge) {
