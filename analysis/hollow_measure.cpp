@@ -142,7 +142,8 @@ void HollowMeasure::note_ends_in_air(const HeightSurface& surface, double spacin
     const Eigen::Vector3d& exit = wedge.exit_points_surface_mm[k];
     const Eigen::Vector3f normal = surface.normal(exit.cast<float>());
     const Eigen::Vector3d up = normal.isZero() ? wedge.surface_normal : normal.cast<double>().eval();
-    if (!mesh_reaches(mesh_, *source_.graph, found->vertices, exit, up, kEndSpacings * spacing_mm)) {
+    if (!mesh_reaches(mesh_, *source_.graph, source_.normal, found->vertices, exit, up,
+                      kEndSpacings * spacing_mm)) {
       wedge.beyond_mesh[k] = true;
       wedge.sigma.length_mm[k] = kUnknown;
       wedge.sigma.volume_mm3 = kUnknown;

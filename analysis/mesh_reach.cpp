@@ -16,6 +16,9 @@ namespace {
 
 /// Around a hole of a millimetre in a fine mesh; more would be as far as other wedges are.
 constexpr std::size_t kMostVertices = 4000;
+/// Clay that looks away from `up` by more than 120 degrees (cosine) is of the other side: the way to it leads
+/// round a rim, and under the place it lies everywhere.
+constexpr double kLooksAway = -0.5;
 
 /// `to`: of each corner from the place, so that its foot is the origin.
 bool holds_foot(const std::array<Eigen::Vector3d, 3>& to, const Eigen::Vector3d& up) {
@@ -29,8 +32,9 @@ bool holds_foot(const std::array<Eigen::Vector3d, 3>& to, const Eigen::Vector3d&
 
 }  // namespace
 
-bool mesh_reaches(const Mesh& mesh, const VertexGraph& graph, std::span<const std::uint32_t> from,
-                  const Eigen::Vector3d& at, const Eigen::Vector3d& up, double near_mm) {
+bool mesh_reaches(const Mesh& mesh, const VertexGraph& graph, std::span<const Eigen::Vector3f> normal,
+                  std::span<const std::uint32_t> from, const Eigen::Vector3d& at, const Eigen::Vector3d& up,
+                  double near_mm) {
   const auto off = [&](std::uint32_t v) -> Eigen::Vector3d { return mesh.positions[v].cast<double>() - at; };
   const auto aside_mm = [&](std::uint32_t v) {
     const Eigen::Vector3d to = off(v);
@@ -40,7 +44,7 @@ bool mesh_reaches(const Mesh& mesh, const VertexGraph& graph, std::span<const st
   std::priority_queue<Open, std::vector<Open>, std::greater<>> open;
   std::unordered_set<std::uint32_t> seen;
   const auto add = [&](std::uint32_t v) {
-    if (seen.insert(v).second) {
+    if (normal[v].cast<double>().dot(up) > kLooksAway && seen.insert(v).second) {
       open.emplace(aside_mm(v), v);
     }
   };
