@@ -99,8 +99,8 @@ TEST(FileWords, NothingSaidOfACalibrationIsHalfGerman) {
        "acquisition/board.cpp", "acquisition/calibration.cpp", "acquisition/calibration_folder.cpp",
        "acquisition/calibration_intrinsics.cpp", "acquisition/calibration_joint.cpp",
        "acquisition/calibration_laser.cpp", "acquisition/calibration_stage.cpp",
-       "acquisition/camera_region.cpp", "acquisition/live_calibration.cpp", "acquisition/artefact.cpp",
-       "acquisition/rig_view.cpp"},
+       "acquisition/camera_region.cpp", "acquisition/live_calibration.cpp",
+       "acquisition/live_calibration_taking.cpp", "acquisition/artefact.cpp", "acquisition/rig_view.cpp"},
       and_these({"laser plane", " day ago"}));
   EXPECT_GT(sentences, 70);
 }
