@@ -30,11 +30,6 @@ namespace dubsar {
                                     const std::string& kicker);
 [[nodiscard]] std::string page_foot();
 
-/// Sums over the red map's regions of one state, strays left out.
-struct RegionSum {
-  long long count = 0;
-  double area_mm2 = 0;
-};
 [[nodiscard]] RegionSum sum_of(const RedMap& map, RegionState state);
 
 /// Conclusive only when the red map and the checklist both say so.

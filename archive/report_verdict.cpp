@@ -71,13 +71,7 @@ std::string open_points(const ReportInput& input) {
 
 /// That the tablet need not be touched again; of clay that this scanner cannot show it is not made.
 std::string promise(const RedMap& map) {
-  RegionSum hidden;
-  for (const RedRegion& region : map.regions) {
-    if (region.state == RegionState::kExcused && region.excuse == Excuse::kUnreachable && !is_stray(region)) {
-      ++hidden.count;
-      hidden.area_mm2 += std::isfinite(region.area_mm2) ? region.area_mm2 : 0.0;
-    }
-  }
+  const RegionSum hidden = sum_out_of_reach(map);
   return hidden.count == 0
              ? "Nobody has to touch the tablet again for its shape."
              : "Nobody has to touch the tablet again for the shape of that. <strong>" +
@@ -88,14 +82,7 @@ std::string promise(const RedMap& map) {
 }  // namespace
 
 RegionSum sum_of(const RedMap& map, RegionState state) {
-  RegionSum sum;
-  for (const RedRegion& region : map.regions) {
-    if (region.state == state && !is_stray(region)) {
-      ++sum.count;
-      sum.area_mm2 += std::isfinite(region.area_mm2) ? region.area_mm2 : 0.0;
-    }
-  }
-  return sum;
+  return sum_of_regions(map, [&](const RedRegion& region) { return region.state == state; });
 }
 
 bool is_conclusive(const ReportInput& input) {

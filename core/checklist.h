@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <limits>
 #include <optional>
@@ -58,6 +59,32 @@ struct FaceCoverage {
 /// A region of zero area: returns from nowhere, which are excused since no clay is missing there.
 [[nodiscard]] inline bool is_stray(const RedRegion& region) {
   return region.state == RegionState::kExcused && !(region.area_mm2 > 0);
+}
+
+/// Regions of a red map together, strays left out.
+struct RegionSum {
+  long long count = 0;
+  double area_mm2 = 0;  ///< by estimate
+};
+
+/// Of those for which counts(region).
+template <class Counts>
+[[nodiscard]] RegionSum sum_of_regions(const RedMap& map, const Counts& counts) {
+  RegionSum sum;
+  for (const RedRegion& region : map.regions) {
+    if (!is_stray(region) && counts(region)) {
+      ++sum.count;
+      sum.area_mm2 += std::isfinite(region.area_mm2) ? region.area_mm2 : 0.0;
+    }
+  }
+  return sum;
+}
+
+/// What is out of the scanner's reach: no verdict speaks of its shape.
+[[nodiscard]] inline RegionSum sum_out_of_reach(const RedMap& map) {
+  return sum_of_regions(map, [](const RedRegion& region) {
+    return region.state == RegionState::kExcused && region.excuse == Excuse::kUnreachable;
+  });
 }
 
 /// What a person should know of a scan.

@@ -16,6 +16,7 @@
 
 #include "acquisition/device_uri.h"
 #include "archive/html.h"
+#include "core/checklist.h"
 #include "core/log.h"
 #include "core/number_text.h"
 #include "core/units.h"
@@ -54,15 +55,6 @@ double red_area_mm2(const RedMap& map) {
   double area = 0;
   for (const RedRegion& region : map.regions) {
     area += region.state == RegionState::kRed ? region.area_mm2 : 0.0;
-  }
-  return area;
-}
-
-double unreachable_mm2(const RedMap& map) {
-  double area = 0;
-  for (const RedRegion& region : map.regions) {
-    const bool is_hidden = region.state == RegionState::kExcused && region.excuse == Excuse::kUnreachable;
-    area += is_hidden ? region.area_mm2 : 0.0;
   }
   return area;
 }
@@ -129,7 +121,7 @@ std::string verdict(const EngineResult& result) {
   const std::string scans = counted(static_cast<long long>(result.poses.size()), "scan", "scans");
   if (result.red_map.conclusive) {
     return fmt::format("conclusive after {}, {} registered{}", scans, registered,
-                       out_of_reach(unreachable_mm2(result.red_map)));
+                       out_of_reach(sum_out_of_reach(result.red_map).area_mm2));
   }
   return fmt::format("{} after {}, {} registered", not_conclusive(red_area_mm2(result.red_map)), scans,
                      registered);
