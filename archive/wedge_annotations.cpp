@@ -4,6 +4,8 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+
 #include "archive/rights.h"
 #include "core/units.h"
 #include "core/wedge_length.h"
@@ -33,7 +35,8 @@ std::string wedge_in_words(const Wedge& w) {
   }
   // A picture may show the side as it lies on the tablet: the left edge upright.
   const std::string turn =
-      w.place.side ? fmt::format(" at {:.0f} degrees as the side is read", deg_from_rad(w.place.turn_rad))
+      w.place.side ? fmt::format(" at {:.0f} degrees as the side is read",
+                                 std::round(deg_from_rad(w.place.turn_rad)) + 0.0)  // nought has no sign
                    : std::string();
   return fmt::format(
       "Wedge {}{}: {:.2f} mm deep, directional edge {:.2f} mm long{}{}, confidence {:.2f}{}", w.id, where,

@@ -67,6 +67,12 @@ TEST(WedgeTable, HasANameForEveryCell) {
   EXPECT_EQ(value("turn_deg"), "0");
 }
 
+TEST(WedgeWords, ATurnOfHardlyAnythingIsNoughtWithoutASign) {
+  Wedge wedge = some_wedge();
+  wedge.place.turn_rad = rad_from_deg(-0.3);
+  EXPECT_THAT(wedge_in_words(wedge), ::testing::HasSubstr(" at 0 degrees as the side is read"));
+}
+
 TEST(WedgeTable, HoldsEveryMeasureAndKeepsTheMicrometre) {
   Wedge far = some_wedge();
   far.depth_point_mm = {12345.6789, 0, 0};  // a mesh that lies twelve metres from its origin
