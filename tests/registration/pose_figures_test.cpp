@@ -28,7 +28,7 @@ void add_part(Registrar& registrar, int id, double low_x_mm, double high_x_mm) {
 
 /// The half lies on the whole with all but its rims and what is too steep; of the whole less than a half lies
 /// on the half.
-TEST(PoseFigures, OverlapIsOfTheSmallerScan) {
+TEST(PoseFigures, OverlapIsOfTheSmallerScanAndRmsOfTheOrderOfTheNoise) {
   Registrar registrar;
   add_part(registrar, 0, -25, 25);
   add_part(registrar, 1, -25, -3);
@@ -38,21 +38,6 @@ TEST(PoseFigures, OverlapIsOfTheSmallerScan) {
     ASSERT_EQ(pose.status, PoseStatus::kRegistered) << pose.reason;
     EXPECT_GT(pose.overlap, 0.65) << pose.id;
     EXPECT_LE(pose.overlap, 1.0) << pose.id;
-  }
-}
-
-/// Twenty millimetres of thirty-five are of both: 0.57, and a little less for rims. Of what either shows they
-/// are 0.4.
-TEST(PoseFigures, OverlapIsTheShareThatBothShow) {
-  Registrar registrar;
-  add_part(registrar, 0, -25, 10);
-  add_part(registrar, 1, -10, 25);
-  JobContext job;
-  ASSERT_TRUE(registrar.finalize(job));
-  for (const ScanPose& pose : registrar.poses()) {
-    ASSERT_EQ(pose.status, PoseStatus::kRegistered) << pose.reason;
-    EXPECT_GT(pose.overlap, 0.42) << pose.id;
-    EXPECT_LT(pose.overlap, 0.70) << pose.id;
     // Both have 0.01 mm of noise along the view, and samples 0.4 mm apart on bumps: no less than a half of
     // that, and no sample counts that is off by more than three sigmas of 0.08 mm and the noise.
     EXPECT_GT(pose.rms_mm, 0.005) << pose.id;
