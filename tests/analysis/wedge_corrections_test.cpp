@@ -195,16 +195,17 @@ TEST(WedgeCorrections, ASplitLooksAroundItsPlacesAsItsOwnBodyIsSpaced) {
   ASSERT_GE(id, 0);
   SurfaceFields fields = found().fields;
   fields.further_surfaces = {fields.surface};
+  const Wedge& wedge = *wedge_of_id(found().set, id);
   fields.body_of.assign(found().mesh.positions.size(), 0);
-  for (const std::uint32_t v : vertices_of(found().set, id)) {
-    fields.body_of[v] = 1;
+  for (std::size_t v = 0; v < fields.body_of.size(); ++v) {
+    const double far_mm = (found().mesh.positions[v].cast<double>() - wedge.depth_point_mm).norm();
+    fields.body_of[v] = far_mm < 8.0 ? 1 : 0;
   }
   WedgeFindings findings = found().findings;
   findings.is_noisy.push_back(0);
   for (std::size_t v = 0; v < fields.body_of.size(); ++v) {
     findings.area_mm2[v] *= fields.body_of[v] == 0 ? 1000.0F : 1.0F;  // as of a coarse mesh
   }
-  const Wedge& wedge = *wedge_of_id(found().set, id);
   WedgeOptions options;
   WedgeCorrection& split = options.corrections.emplace_back();
   split.kind = CorrectionKind::kSplit;
