@@ -211,13 +211,14 @@ TEST(LiveSession, WhatWasStoppedGoesOnWithEverythingThatWasStored) {
 
 TEST(LiveSession, AReopenedSessionShowsWhatIsExcusedAsBefore) {
   const test::TemporaryFolder folder;
+  // Of which something is excused after five scans, and something still red.
+  const std::string tablet = "sim:?seed=2&size=20x16x8&spacing=0.25&noise=0.02";
   std::shared_ptr<const ColouredPoints> before;
   std::array<int, kFaceCount> red_points{};
   {
-    Followed followed(kSmallTablet, folder.path() / "s");
+    Followed followed(tablet, folder.path() / "s");
     followed.session.scan_now();
     ASSERT_TRUE(followed.wait_for_phase(LivePhase::kWaiting));
-    // Until something is excused, and something is still red.
     for (int turns = 0; turns < 4; ++turns) {
       const std::size_t scans = followed.session.state().scans.size();
       followed.session.scan_now();
@@ -233,7 +234,7 @@ TEST(LiveSession, AReopenedSessionShowsWhatIsExcusedAsBefore) {
   ASSERT_TRUE(before);
   EXPECT_GT(std::ranges::count(before->colours, kAmberOfExcused), 0)
       << "nothing is excused: it shows nothing";
-  Followed again(kSmallTablet, folder.path() / "s");
+  Followed again(tablet, folder.path() / "s");
   again.session.read();
   ASSERT_TRUE(again.wait_for_rest());
   const LiveState state = again.session.state();
