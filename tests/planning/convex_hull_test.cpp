@@ -104,5 +104,18 @@ TEST(ConvexHull, OfPointsInAPlaneThereIsNone) {
   EXPECT_TRUE(convex_hull(std::vector<Eigen::Vector3d>{}).faces.empty());
 }
 
+TEST(ConvexHull, OfABoxIsTheBox) {
+  std::vector<Eigen::Vector3d> points;
+  for (const double x : {0.0, 1.0, 2.0}) {
+    for (const double y : {0.0, 1.0, 3.0}) {
+      for (const double z : {0.0, 1.0, 4.0}) {
+        points.emplace_back(x, y, z);
+      }
+    }
+  }
+  EXPECT_NEAR(surface_area_mm2(convex_hull(points)), 2 * (6 + 8 + 12), 1e-4);
+  EXPECT_TRUE(convex_hull(std::vector<Eigen::Vector3d>(5, Eigen::Vector3d::Zero())).faces.empty());
+}
+
 }  // namespace
 }  // namespace dubsar

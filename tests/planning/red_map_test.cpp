@@ -5,14 +5,12 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cmath>
 #include <memory>
 #include <optional>
 
 #include "core/units.h"
 #include "planning/checklist.h"
 #include "planning/cleared_map.h"
-#include "planning/convex_hull.h"
 #include "planning/excuse.h"
 #include "planning/next_view.h"
 #include "planning/red_change.h"
@@ -24,7 +22,6 @@
 namespace dubsar {
 namespace {
 
-using test::kSpacingMm;
 using test::Session;
 using test::turned;
 using test::turntable_rig;
@@ -251,9 +248,9 @@ TEST(RedMap, WhatAHandMayBringIntoDepthIsNotOutOfReach) {
     all_mm2 += region.area_mm2;
     unreachable_mm2 += region.excuse == Excuse::kUnreachable ? region.area_mm2 : 0.0;
   }
-  // Specks of the belt that no candidate sees steeply enough: 1.7 mm2 in a depth of 120 mm, too.
+  // Specks of the belt that no candidate sees steeply enough: 2.8 of 149 mm2, and 1.7 in a depth of 120 mm.
   EXPECT_GT(all_mm2, 100.0);
-  EXPECT_LT(unreachable_mm2, 0.05 * all_mm2);
+  EXPECT_LT(unreachable_mm2, 0.025 * all_mm2);
   EXPECT_TRUE(std::ranges::any_of(result->map.next, [](const NextView& view) {
     return view.say.find("above its middle to the working distance") != std::string::npos;
   }));
@@ -380,45 +377,6 @@ TEST(RedMap, ChecklistAddsUpFaces) {
   EXPECT_EQ(list.warnings[0].scan, 3);
   EXPECT_EQ(list.warnings[0].text, "its lengths are off");
   EXPECT_FALSE(list.conclusive);
-}
-
-TEST(ViewPrediction, AScanOfAnUnknownRigLookedNoDeeperThanItsReturns) {
-  RangeGrid grid;
-  grid.allocate(41, 41);
-  grid.spacing_mm = kSpacingMm;
-  for (std::size_t i = 0; i < grid.size(); ++i) {
-    grid.x[i] = static_cast<float>(static_cast<double>(i % 41) * kSpacingMm);
-    grid.y[i] = static_cast<float>(static_cast<double>(i / 41) * kSpacingMm);
-    grid.z[i] = 40.0F + grid.x[i];
-    grid.valid[i] = 1;
-  }
-  const Eigen::AlignedBox3d field = ScannerModel::that_took(grid, nullptr, 0.02).field_mm;
-  const Eigen::Vector3d far = kSpacingMm * Eigen::Vector3d(3, 3, 9);
-  const Eigen::Vector3d near = kSpacingMm * Eigen::Vector3d(3, 3, 0);
-  EXPECT_TRUE(field.min().isApprox(Eigen::Vector3d(0, 0, 40) + far, 1e-6)) << field.min().transpose();
-  EXPECT_TRUE(field.max().isApprox(Eigen::Vector3d(10, 10, 50) - near, 1e-6)) << field.max().transpose();
-}
-
-TEST(ViewPrediction, NoiseMakesGrazingLinksTooLong) {
-  // At 60°, µ = 0.05 mm and 0.02 mm noise about one link in nine is too long.
-  const double both = dense_sampling_chance(std::cos(rad_from_deg(60)), 0.05, 0.02);
-  EXPECT_NEAR(std::sqrt(both), 1.0 - 1.0 / 9.0, 0.05);
-  EXPECT_EQ(dense_sampling_chance(std::cos(rad_from_deg(71)), 0.05, 0.0), 0.0);
-  EXPECT_EQ(dense_sampling_chance(std::cos(rad_from_deg(69)), 0.05, 0.0), 1.0);
-  EXPECT_GT(dense_sampling_chance(std::cos(rad_from_deg(30)), 0.1, 0.02), 0.99);
-}
-
-TEST(ConvexHull, OfABoxIsTheBox) {
-  std::vector<Eigen::Vector3d> points;
-  for (const double x : {0.0, 1.0, 2.0}) {
-    for (const double y : {0.0, 1.0, 3.0}) {
-      for (const double z : {0.0, 1.0, 4.0}) {
-        points.emplace_back(x, y, z);
-      }
-    }
-  }
-  EXPECT_NEAR(surface_area_mm2(convex_hull(points)), 2 * (6 + 8 + 12), 1e-4);
-  EXPECT_TRUE(convex_hull(std::vector<Eigen::Vector3d>(5, Eigen::Vector3d::Zero())).faces.empty());
 }
 
 }  // namespace

@@ -241,16 +241,18 @@ std::string program_of(const fs::path& bag, const std::string& step) {
       .get<std::string>();
 }
 
+/// Of a session: version 0.0.9 came to its verdict.
+void scanned_by_another(const fs::path& session) {
+  SessionStore store = SessionStore::open(session).value();
+  nlohmann::json run = nlohmann::json::parse(*store.load_document("run").value());
+  run["program"] = "Dubsar 0.0.9";
+  ASSERT_TRUE(store.save_document("run", run.dump()));
+}
+
 TEST_F(Export, WhatWasCopiedIsThatOfTheProgramThatMadeIt) {
   const fs::path session = at("of_old");
   fs::copy(at("session"), session, fs::copy_options::recursive);
-  {
-    Result<SessionStore> store = SessionStore::open(session);
-    ASSERT_TRUE(store);
-    nlohmann::json run = nlohmann::json::parse(**store->load_document("run"));
-    run["program"] = "Dubsar 0.0.9";
-    ASSERT_TRUE(store->save_document("run", run.dump()));
-  }
+  scanned_by_another(session);
   ASSERT_EQ(run_command({"export", session.string(), "--to", at("old_bag").string(), "--without",
                          "renderings,features,grid-ply"})
                 .status,
@@ -268,14 +270,8 @@ TEST_F(Export, WhatWasCopiedIsThatOfTheProgramThatMadeIt) {
 TEST_F(Export, TheRegistrationIsOfTheProgramThatPlacedTheScansLast) {
   const fs::path session = at("placed_anew");
   fs::copy(at("session"), session, fs::copy_options::recursive);
-  {
-    Result<SessionStore> store = SessionStore::open(session);
-    ASSERT_TRUE(store);
-    nlohmann::json run = nlohmann::json::parse(**store->load_document("run"));
-    run["program"] = "Dubsar 0.0.9";
-    ASSERT_TRUE(store->save_document("run", run.dump()));
-    ASSERT_TRUE(store->save_document("programs", R"({"placed":"Dubsar 0.0.10"})"));
-  }
+  scanned_by_another(session);
+  ASSERT_TRUE(SessionStore::open(session).value().save_document("programs", R"({"placed":"Dubsar 0.0.10"})"));
   ASSERT_EQ(run_command({"export", session.string(), "--to", at("placed_bag").string(), "--without",
                          "renderings,features,wedges,grid-ply"})
                 .status,
